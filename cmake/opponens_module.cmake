@@ -1,0 +1,27 @@
+# SPDX-FileCopyrightText: 2026 The opponens authors
+# SPDX-License-Identifier: BSD-3-Clause
+
+# Flags every target of ours shares. -ffp-contract=off: a fused multiply-add would change stored numbers from one
+# machine to the next.
+function(opponens_compile_options target)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
+  target_compile_options(${target} PRIVATE -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
+    $<$<BOOL:${OPPONENS_WERROR}>:-Werror>)
+endfunction()
+
+# opponens_module(name HEADERS ... SOURCES ... PUBLIC ... PRIVATE ...): target opponens::name, installed and exported.
+function(opponens_module name)
+  cmake_parse_arguments(ARG "" "" "HEADERS;SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  set(target opponens_${name})
+  add_library(${target} ${ARG_SOURCES})
+  add_library(opponens::${name} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} VERIFY_INTERFACE_HEADER_SETS ON
+    POSITION_INDEPENDENT_CODE ON)
+  opponens_compile_options(${target})
+  target_sources(${target} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${ARG_HEADERS})
+  target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
+  install(TARGETS ${target} EXPORT opponens
+    FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/opponens
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+endfunction()

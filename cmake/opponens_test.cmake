@@ -1,0 +1,18 @@
+# SPDX-FileCopyrightText: 2026 The opponens authors
+# SPDX-License-Identifier: BSD-3-Clause
+
+# opponens_test(name LABEL label SOURCES ... LIBRARIES ...): one GoogleTest executable; each case is a ctest test.
+function(opponens_test name)
+  cmake_parse_arguments(ARG "" "LABEL;TIMEOUT" "SOURCES;LIBRARIES" ${ARGN})
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 300)
+  endif()
+  add_executable(${name} ${ARG_SOURCES})
+  opponens_compile_options(${name})
+  target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} GTest::gtest_main)
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
+  target_compile_definitions(${name} PRIVATE
+    OPPONENS_SOURCE_DIR="${PROJECT_SOURCE_DIR}" OPPONENS_SHARED_DATA="${OPPONENS_SHARED_DATA}")
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 TEST_PREFIX "${name}/"
+    PROPERTIES LABELS "${ARG_LABEL}" TIMEOUT ${ARG_TIMEOUT})
+endfunction()

@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+namespace opponens {
+
+struct Contact {
+  std::string link;       ///< hand link that touches
+  Eigen::Vector3d p_OC;   ///< m
+  Eigen::Vector3d n_O;    ///< unit, pointing into the object
+  double mu = 0.5;        ///< friction coefficient
+};
+
+enum class ContactModel { frictionless, point_with_friction, soft_finger };
+enum class ForceUnit { normal, force };  ///< edge force of normal component 1 (GraspIt!'s), or of length 1 (FRoGGeR's)
+enum class WrenchNorm { l1, linf };
+enum class ClosureState {
+  force_closure,      ///< the origin is strictly inside the wrench hull
+  not_force_closure,  ///< the origin is outside or on the boundary of a full-dimensional hull
+  rank_deficient,     ///< the wrenches do not span R^6
+};
+
+/// What a quality value means; stored with every value (design: "Grasp quality").
+struct QualityConvention {
+  ContactModel model = ContactModel::point_with_friction;
+  double mu = 0.5;
+  int edges = 8;                     ///< cone edges per contact
+  ForceUnit unit = ForceUnit::normal;
+  WrenchNorm norm = WrenchNorm::l1;
+  double rho = 1.0;                  ///< m, torque is divided by it
+  double torsion_radius = 0.0;       ///< m, soft finger only: the torque semi-axis of the friction ellipsoid
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< m, in O: the point torques are taken about
+};
+
+struct GraspQuality {
+  ClosureState state = ClosureState::rank_deficient;
+  std::optional<double> epsilon;     ///< radius of the largest origin-centred ball in the wrench hull; negative: minus the
+                                     ///< distance of the origin to the hull; nullopt when the set is rank deficient
+  std::optional<double> min_weight;  ///< l*: max l with W a = 0, 1'a = 1, a >= l; nullopt when W a = 0 has no solution
+  std::optional<double> volume;      ///< of the wrench hull; nullopt when not computed
+  Eigen::Matrix<double, 6, 1> direction = Eigen::Matrix<double, 6, 1>::Zero();  ///< facet normal that decides epsilon
+  QualityConvention convention;
+  bool force_closure() const { return state == ClosureState::force_closure; }
+};
+
+/// One way for the arm to bring the hand there: inverse kinematics of both poses on the same branch.
+struct ArmSolution {
+  Eigen::VectorXd q_pregrasp;  ///< [a] rad
+  Eigen::VectorXd q_grasp;     ///< [a] rad
+};
+
+/// A grasp of a given object along the synergies of a group. n hand joints, k synergies, m contacts.
+struct Grasp {
+  std::string group;
+  Eigen::VectorXd coefficients;        ///< [k] synergy coordinates c, scaled units
+  Eigen::VectorXd slack;               ///< [n] rad: q_grasp - scale .* (center + axes c)
+  Eigen::VectorXd q_grasp;             ///< [n] rad, contacts touching
+  Eigen::VectorXd q_pregrasp;          ///< [n] rad, fingers opened along the synergies
+  Eigen::Isometry3d X_OH = Eigen::Isometry3d::Identity();           ///< hand (palm) in the object, grasping
+  Eigen::Isometry3d X_OH_pregrasp = Eigen::Isometry3d::Identity();  ///< hand retreated
+  std::vector<Contact> contacts;
+  GraspQuality quality;
+  bool synergy_grasp = true;           ///< slack norm within the stated bound; otherwise "free"
+  std::vector<ArmSolution> arm_solutions;  ///< filled by Algorithm 1; empty: not reachable or not yet asked
+};
+
+}  // namespace opponens

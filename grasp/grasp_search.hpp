@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/grasp.hpp"
+#include "core/synergies.hpp"
+#include "robot/mesh_distance.hpp"
+#include "robot/robot_model.hpp"
+#include "robot/scene.hpp"
+
+namespace opponens::grasp {
+
+struct SearchSettings {
+  int count = 5;                     ///< grasps to return
+  int max_trials = 2000;             ///< seeds tried; the search stops on this count, never on a clock
+  double mu = 0.5;                   ///< friction coefficient
+  int edges = 8;                     ///< friction cone edges
+  double max_penetration = 0.001;    ///< m, of any hand point into object at the returned grasp
+  double contact_tolerance = 0.001;  ///< m, a contact point closer than this to the surface touches
+  double clearance_pregrasp = 0.01;  ///< m, least distance hand-object at the pre-grasp
+  double slack_bound = 0.3;          ///< rad, 2-norm of the slack of a synergy grasp
+  double min_distance_pose = 0.01;   ///< m, two returned grasps closer than this in palm position ...
+  double min_distance_angle = 0.2;   ///< rad ... and this in palm orientation count as one
+  int threads = 1;
+};
+void validate(const SearchSettings& settings);  ///< throws std::invalid_argument naming field, value, constraint
+
+struct SearchResult {
+  std::vector<Grasp> grasps;                     ///< best first (epsilon), arm_solutions empty
+  std::int64_t trials = 0;
+  std::int64_t evaluations = 0;                  ///< objective evaluations by NLopt
+  std::map<std::string, std::int64_t> rejected;  ///< reason -> count; trials = grasps found + rejected
+};
+
+/// Called for each candidate that is force closure: an extra acceptance test (e.g. Algorithm 1's reachability).
+/// An empty string accepts; otherwise the reason, which is counted. Must be thread-safe. May fill arm_solutions.
+using Accept = std::function<std::string(Grasp&)>;
+
+/// Grasps of the scene's object by one hand along the synergies of one group: NLopt over hand pose and the k synergy
+/// coordinates, then closing along the synergies until contact, finger by finger, then quality and pre-grasp.
+/// Deterministic for a seed whatever the thread count. hand: model rooted at the palm (load_hand).
+SearchResult search_grasps(const robot::RobotModel& hand, const robot::Scene& scene, const std::string& object,
+                           const SynergyGroup& group, const SynergyBox& pre_grasp, const SearchSettings& settings,
+                           std::uint64_t seed, const Accept& accept = {},
+                           const std::function<void(std::int64_t done, std::int64_t total)>& progress = {});
+
+}  // namespace opponens::grasp

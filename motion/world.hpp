@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace opponens::motion {
+
+/// The only two questions a planner asks the world; a faster checker can be put under them.
+struct World {
+  /// First invalid configuration on the straight motion from q_from (exclusive, known valid) to q_to (inclusive), as a
+  /// fraction in (0, 1]; nullopt when the whole motion is valid. Adds the configurations evaluated to checks.
+  std::function<std::optional<double>(const Eigen::VectorXd& q_from, const Eigen::VectorXd& q_to, std::int64_t& checks)>
+      first_invalid;
+  /// Whether each row of a batch [B x d] is valid. Adds B to checks.
+  std::function<std::vector<bool>(const Eigen::MatrixXd& batch, std::int64_t& checks)> free;
+};
+
+}  // namespace opponens::motion

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+
+#include <Eigen/Core>
+
+#include "robot/geometry.hpp"
+
+namespace opponens::robot {
+
+/// Exact signed distance to a triangle mesh, by a bounding volume tree and angle-weighted pseudonormals
+/// (Baerentzen and Aanaes 2005, doi:10.1109/TVCG.2005.49). Negative inside a closed mesh. Immutable, thread-safe.
+class MeshDistance {
+ public:
+  struct Query {
+    double distance;           ///< m, signed
+    Eigen::Vector3d point;     ///< nearest surface point
+    Eigen::Vector3d gradient;  ///< unit, of the signed distance: out of the mesh
+    int triangle;
+  };
+
+  explicit MeshDistance(std::shared_ptr<const TriangleMesh> mesh);
+  ~MeshDistance();
+  MeshDistance(MeshDistance&&) noexcept;
+  MeshDistance& operator=(MeshDistance&&) noexcept;
+
+  Query query(const Eigen::Vector3d& p) const;
+  double signed_distance(const Eigen::Vector3d& p) const { return query(p).distance; }
+  bool inside(const Eigen::Vector3d& p) const { return query(p).distance < 0.0; }
+  const TriangleMesh& mesh() const;
+
+ private:
+  struct Tree;
+  std::unique_ptr<const Tree> tree_;
+};
+
+}  // namespace opponens::robot

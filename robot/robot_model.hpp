@@ -1,0 +1,121 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "core/path.hpp"
+#include "robot/geometry.hpp"
+
+namespace opponens::robot {
+
+enum class JointType { fixed, revolute, prismatic };
+
+struct Mimic {
+  std::string joint;
+  double multiplier = 1.0;
+  double offset = 0.0;  ///< rad or m
+};
+
+struct Joint {
+  std::string name;
+  JointType type = JointType::fixed;
+  int parent = -1;  ///< link index
+  int child = -1;   ///< link index
+  Eigen::Isometry3d X_PJ = Eigen::Isometry3d::Identity();  ///< joint frame in the parent link, at zero
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();         ///< unit, in the joint frame
+  double lower = 0.0;     ///< rad or m
+  double upper = 0.0;     ///< rad or m
+  double velocity = 0.0;  ///< rad/s or m/s, limit
+  std::optional<Mimic> mimic;
+};
+
+struct Link {
+  std::string name;
+  int joint = -1;  ///< index of the joint that moves it; -1 for the root
+  std::vector<Geometry> collision;  ///< of the chosen kind: urdf collision or visual
+};
+
+/// A point of the hand's surface where contact is intended (the paper's Fig. 5), or a finger tip.
+struct SurfacePoint {
+  std::string name;
+  std::string finger;    ///< "index", "middle", "ring", "thumb", "palm", ...
+  int link = -1;
+  Eigen::Vector3d p_L;   ///< m
+  Eigen::Vector3d n_L;   ///< unit, out of the link's surface
+};
+
+/// A kinematic tree as loaded: links in topological order (root first), joints in the order of their child links.
+struct RobotDescription {
+  std::string name;
+  std::vector<Link> links;
+  std::vector<Joint> joints;
+  std::vector<std::string> arm_joints;   ///< [a] actuated, in planning order; empty for a hand alone
+  std::vector<std::string> hand_joints;  ///< [n] actuated, in hand.yaml's order
+  std::string palm_link;                 ///< frame H
+  std::string arm_tip_link;              ///< last arm link (the hand's mount), empty for a hand alone
+  std::vector<SurfacePoint> tips;
+  std::vector<SurfacePoint> contact_points;
+  Eigen::VectorXd weights;               ///< [a+n] of the joint metric, default 1
+  std::set<std::pair<int, int>> allowed_collisions;  ///< link index pairs (first < second) that may touch
+  std::vector<std::string> notes;        ///< what was ignored or defaulted while loading
+};
+
+/// Kinematics of a tree. Immutable after construction, safe to share between threads. A configuration q = [q_a; q_h]
+/// is ordered by name as given in the description, never by position in the URDF.
+class RobotModel {
+ public:
+  explicit RobotModel(RobotDescription description);
+
+  const RobotDescription& description() const { return description_; }
+  const std::vector<Link>& links() const { return description_.links; }
+  const std::vector<std::string>& joint_names() const { return joint_names_; }  ///< [d], arm then hand
+  int dof() const { return static_cast<int>(joint_names_.size()); }
+  const PlanningGroup& arm() const { return arm_; }
+  const PlanningGroup& hand() const { return hand_; }
+  const Eigen::VectorXd& lower() const { return lower_; }        ///< [d]
+  const Eigen::VectorXd& upper() const { return upper_; }        ///< [d]
+  const Eigen::VectorXd& velocity() const { return velocity_; }  ///< [d]
+  const Eigen::VectorXd& weights() const { return description_.weights; }  ///< [d]
+  int link_index(const std::string& name) const;                 ///< throws std::invalid_argument when absent
+  int palm() const { return palm_; }
+
+  /// Poses X_RL of every link in the root frame R. Cost: one product per link. q: [d] rad.
+  std::vector<Eigen::Isometry3d> link_poses(const Eigen::Ref<const Eigen::VectorXd>& q) const;
+  /// The same, reusing the output's memory.
+  void link_poses(const Eigen::Ref<const Eigen::VectorXd>& q, std::vector<Eigen::Isometry3d>& X_RL) const;
+
+  /// Geometric Jacobian [3 x d] of the point p_R fixed to a link, in R, given the link poses at q.
+  Eigen::Matrix3Xd point_jacobian(const std::vector<Eigen::Isometry3d>& X_RL, int link,
+                                  const Eigen::Vector3d& p_R) const;
+
+  /// q clipped to the joint limits.
+  Eigen::VectorXd clip(const Eigen::Ref<const Eigen::VectorXd>& q) const;
+  bool within_limits(const Eigen::Ref<const Eigen::VectorXd>& q, double tolerance = 1e-9) const;
+
+ private:
+  struct Drive {        ///< how a joint's position follows from q
+    int index = -1;     ///< into q; -1: constant offset (fixed, or not actuated)
+    double multiplier = 1.0;
+    double offset = 0.0;
+  };
+
+  RobotDescription description_;
+  std::vector<std::string> joint_names_;
+  PlanningGroup arm_;
+  PlanningGroup hand_;
+  Eigen::VectorXd lower_;
+  Eigen::VectorXd upper_;
+  Eigen::VectorXd velocity_;
+  std::vector<Drive> drives_;
+  int palm_ = 0;
+};
+
+}  // namespace opponens::robot
