@@ -1,0 +1,205 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/arguments.hpp"
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <memory>
+#include <sstream>
+
+#include "cli/commands.hpp"
+
+namespace opponens::cli {
+namespace {
+
+/// Registers subcommands: each owns its options, which live until the command runs.
+class Builder {
+ public:
+  Builder(CLI::App& app, Invocation& invocation) : app_(app), invocation_(invocation) {}
+
+  template <typename Options>
+  CLI::App* command(const std::string& name, const std::string& help, int (*run)(const Options&, const Console&),
+                    const std::function<void(CLI::App&, Options&)>& declare) {
+    auto options = std::make_shared<Options>();
+    CLI::App* sub = app_.add_subcommand(name, help);
+    declare(*sub, *options);
+    sub->add_flag("--json", invocation_.json, "Print one JSON document on stdout and nothing else");
+    sub->add_flag("--quiet", invocation_.quiet, "No progress and no text; errors only");
+    sub->callback([this, options, run] {
+      invocation_.run = [options, run](const Console& console) { return run(*options, console); };
+    });
+    return sub;
+  }
+
+ private:
+  CLI::App& app_;
+  Invocation& invocation_;
+};
+
+void add_store(CLI::App& app, Common& common) {
+  app.add_option("--store", common.store, "Directory of the store")->required();
+}
+
+void add_seed(CLI::App& app, std::uint64_t& seed) {
+  app.add_option("--seed", seed, "Seed of every random choice; equal seeds give equal bytes")->capture_default_str();
+}
+
+void add_threads(CLI::App& app, int& threads) {
+  app.add_option("--threads", threads, "Threads; 0 = all cores. Results do not depend on it")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+}
+
+template <typename Options>
+void add_world(CLI::App& app, Options& options) {
+  app.add_option("--robot", options.robot, "robot.yaml")->capture_default_str();
+  app.add_option("--scene", options.scene, "Scene YAML")->capture_default_str();
+  app.add_option("--object", options.object, "Body of the scene to grasp; default: the one the scene names");
+}
+
+void declare_simulate(CLI::App& app, SimulateOptions& options) {
+  add_store(app, options.common);
+  add_seed(app, options.common.seed);
+  app.add_option("--repetitions", options.repetitions, "Recordings per grasp type")
+      ->check(CLI::Range(2, 1000))
+      ->capture_default_str();
+}
+
+void declare_ingest(CLI::App& app, IngestOptions& options) {
+  app.add_option("PATH", options.paths, "Recordings, or the folder that holds them")->required();
+  add_store(app, options.common);
+  app.add_option("--source", options.source, "YAML that describes the recordings (docs/ingest.md)")->required();
+  app.add_flag("--dry-run", options.dry_run, "Say what would be stored; store nothing");
+}
+
+void declare_retarget(CLI::App& app, RetargetOptions& options) {
+  add_store(app, options.common);
+  app.add_option("--hand", options.hand, "hand.yaml of the robot hand")->capture_default_str();
+  app.add_option("--mapping", options.mapping, "paper: flexion joint to joint, abduction and thumb by fingertips")
+      ->check(CLI::IsMember({"paper"}))
+      ->capture_default_str();
+  app.add_option("--hand-length", options.hand_length, "Wearer's hand length in m, where a recording does not say")
+      ->check(CLI::Range(0.12, 0.25))
+      ->capture_default_str();
+}
+
+void declare_analyze(CLI::App& app, AnalyzeOptions& options) {
+  const CLI::Range fraction(1e-6, 0.999999);
+  add_store(app, options.common);
+  add_seed(app, options.common.seed);
+  app.add_option("--alpha", options.alpha, "Share of configurations left outside a box")
+      ->check(fraction)
+      ->capture_default_str();
+  app.add_option("--beta", options.beta, "Share of variance left out by keeping k synergies")
+      ->check(fraction)
+      ->capture_default_str();
+  app.add_option("--transition", options.transition, "Rule for the end of the pre-grasp phase")
+      ->check(CLI::IsMember({"likeness", "changepoint"}))
+      ->capture_default_str();
+  app.add_option("--box-root", options.box_root, "Root of 1 - alpha that sizes the box")
+      ->check(CLI::IsMember({"n", "k", "literal"}))
+      ->capture_default_str();
+  app.add_option("--group-by", options.group_by, "Label that groups the grasp phases")->capture_default_str();
+  app.add_option("--space", options.space, "Unit of the joints: rad, or their ranges")
+      ->check(CLI::IsMember({"rad", "normalized"}))
+      ->capture_default_str();
+  app.add_option("--phase", options.phase, "both: split each recording in two phases; none: all samples per group")
+      ->check(CLI::IsMember({"both", "none"}))
+      ->capture_default_str();
+  app.add_option("--input", options.input, "Which motions: hand (retargeted) or glove; default: hand when there are any")
+      ->check(CLI::IsMember({"hand", "glove"}));
+}
+
+void declare_grasp(CLI::App& app, GraspOptions& options) {
+  add_store(app, options.common);
+  add_world(app, options);
+  add_seed(app, options.common.seed);
+  add_threads(app, options.common.threads);
+  app.add_option("--group", options.group, "Synergy group, or all")->capture_default_str();
+  app.add_option("--count", options.count, "Grasps to keep per group")->check(CLI::Range(1, 1000))->capture_default_str();
+  app.add_option("--max-trials", options.max_trials, "Trials per group")
+      ->check(CLI::Range(1, 100000000))
+      ->capture_default_str();
+}
+
+void declare_plan(CLI::App& app, PlanOptions& options) {
+  add_store(app, options.common);
+  add_world(app, options);
+  add_seed(app, options.common.seed);
+  add_threads(app, options.common.threads);
+  app.add_option("--planner", options.planner, "synergy (Algorithms 2-4) or rrtconnect (multi-goal baseline)")
+      ->check(CLI::IsMember({"synergy", "rrtconnect"}))
+      ->capture_default_str();
+  app.add_option("--runs", options.runs, "Queries with seeds seed, seed+1, ...")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  app.add_option("--time-limit", options.time_limit, "Seconds per run; 0 = none (the search stops on counts)")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str();
+  app.add_option("--max-checks", options.max_checks, "Configurations checked per run; 0 = no limit")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  app.add_option("--step", options.step, "Longest step of a tree, rad")->check(CLI::Range(1e-3, 10.0))->capture_default_str();
+  app.add_option("--resolution", options.resolution, "Spacing of checked configurations, rad")
+      ->check(CLI::Range(1e-4, 1.0))
+      ->capture_default_str();
+}
+
+void declare_show(CLI::App& app, ShowOptions& options) {
+  app.add_option("ID", options.id, "Object id, or the beginning of one");
+  add_store(app, options.common);
+}
+
+void add_commands(Builder& add) {
+  add.command<DemoOptions>("demo", "The whole flow on built-in simulated demonstrations", demo,
+                           [](CLI::App& app, DemoOptions& options) {
+                             app.add_option("--out", options.out, "Folder for the store and the report")
+                                 ->capture_default_str();
+                             add_seed(app, options.seed);
+                             add_threads(app, options.threads);
+                           });
+  add.command<SimulateOptions>("simulate", "Make simulated human-hand recordings", simulate, declare_simulate);
+  add.command<IngestOptions>("ingest", "Read recordings into a store", ingest, declare_ingest);
+  add.command<RetargetOptions>("retarget", "Map glove recordings to a robot hand", retarget, declare_retarget);
+  add.command<AnalyzeOptions>("analyze", "Phases, synergies and boxes", analyze, declare_analyze);
+  add.command<GraspOptions>("grasp", "Search force-closure grasps along the synergies", grasp, declare_grasp);
+  add.command<PlanOptions>("plan", "Plan a hand-arm path to one of the grasps", plan, declare_plan);
+  add.command<VerifyOptions>("verify", "Check everything stored again, independently", verify,
+                             [](CLI::App& app, VerifyOptions& options) { add_store(app, options.common); });
+  add.command<ReportOptions>("report", "Write one HTML file about what is stored", report,
+                             [](CLI::App& app, ReportOptions& options) {
+                               add_store(app, options.common);
+                               app.add_option("--out", options.out, "File to write")->capture_default_str();
+                             });
+  add.command<ShowOptions>("show", "List a store, or print one object of it", show, declare_show);
+  add.command<ShowOptions>("why", "Print what an object was made from, back to the recordings", why,
+                           [](CLI::App& app, ShowOptions& options) {
+                             declare_show(app, options);
+                             app.get_option("ID")->required();
+                           });
+}
+
+}  // namespace
+
+Invocation parse_arguments(int argc, char** argv) {
+  Invocation invocation;
+  CLI::App app("opponens plans human-like grasping motions from recorded hand synergies.", "opponens");
+  app.set_version_flag("--version", OPPONENS_VERSION);
+  app.require_subcommand(1);
+  app.footer("Exit codes: 0 done; 1 no answer found; 2 wrong use or invalid input; 3 store damaged or newer;\n"
+             "130 interrupted (what was finished is kept). docs/cli.md is the full reference.");
+  Builder builder(app, invocation);
+  add_commands(builder);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    std::ostringstream out;
+    std::ostringstream err;
+    const int code = app.exit(error, out, err);
+    invocation.exit_code = code == 0 ? 0 : kInvalid;
+    invocation.text = code == 0 ? out.str() : err.str();
+  }
+  return invocation;
+}
+
+}  // namespace opponens::cli

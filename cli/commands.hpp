@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/console.hpp"
+
+namespace opponens::cli {
+
+inline constexpr int kDone = 0;
+inline constexpr int kNoAnswer = 1;
+inline constexpr int kInvalid = 2;
+inline constexpr int kStoreDamaged = 3;
+inline constexpr int kInterrupted = 130;
+
+/// Options of every command.
+struct Common {
+  std::filesystem::path store;
+  std::uint64_t seed = 1;
+  int threads = 0;  ///< 0: all cores
+};
+
+struct SimulateOptions {
+  Common common;
+  int repetitions = 12;
+};
+struct IngestOptions {
+  Common common;
+  std::vector<std::filesystem::path> paths;
+  std::string source;
+  bool dry_run = false;
+};
+struct RetargetOptions {
+  Common common;
+  std::string hand = "models/ur5_allegro/allegro_right.yaml";
+  std::string mapping = "paper";
+  double hand_length = 0.19;  ///< m, wearer's
+};
+struct AnalyzeOptions {
+  Common common;
+  double alpha = 0.05;
+  double beta = 0.05;
+  std::string transition = "likeness";
+  std::string box_root = "n";
+  std::string group_by = "family";
+  std::string space = "rad";
+  std::string phase = "both";  ///< both | none
+  std::string input;           ///< hand | glove; empty: hand when there is any
+};
+struct GraspOptions {
+  Common common;
+  std::string robot = "models/ur5_allegro/ur5_allegro_right.yaml";
+  std::string scene = "models/scenes/bottle_shelf.yaml";
+  std::string object;
+  std::string group = "all";
+  int count = 5;
+  int max_trials = 2000;
+};
+struct PlanOptions {
+  Common common;
+  std::string robot = "models/ur5_allegro/ur5_allegro_right.yaml";
+  std::string scene = "models/scenes/bottle_shelf.yaml";
+  std::string object;
+  std::string planner = "synergy";
+  int runs = 1;
+  double time_limit = 0.0;      ///< s, 0: none
+  std::int64_t max_checks = 0;  ///< 0: none
+  double step = 0.4;            ///< rad
+  double resolution = 0.02;     ///< rad
+};
+struct VerifyOptions {
+  Common common;
+};
+struct ReportOptions {
+  Common common;
+  std::filesystem::path out = "report.html";
+};
+struct ShowOptions {
+  Common common;
+  std::string id;  ///< empty: list everything
+};
+struct DemoOptions {
+  std::filesystem::path out = "demo";
+  std::uint64_t seed = 1;
+  int threads = 0;
+};
+
+// Each runs one command and returns its exit code; errors are exceptions (see main.cpp).
+int simulate(const SimulateOptions& options, const Console& console);
+int ingest(const IngestOptions& options, const Console& console);
+int retarget(const RetargetOptions& options, const Console& console);
+int analyze(const AnalyzeOptions& options, const Console& console);
+int grasp(const GraspOptions& options, const Console& console);
+int plan(const PlanOptions& options, const Console& console);
+int verify(const VerifyOptions& options, const Console& console);
+int report(const ReportOptions& options, const Console& console);
+int show(const ShowOptions& options, const Console& console);
+int why(const ShowOptions& options, const Console& console);
+int demo(const DemoOptions& options, const Console& console);
+
+}  // namespace opponens::cli

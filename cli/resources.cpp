@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/resources.hpp"
+
+#include <cstdlib>
+#include <vector>
+
+#include "core/require.hpp"
+
+namespace opponens::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> data_folders() {
+  std::vector<fs::path> folders;
+  if (const char* folder = std::getenv("OPPONENS_DATA")) folders.emplace_back(folder);
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  if (!error) folders.push_back(program.parent_path().parent_path() / "share" / "opponens");
+  folders.emplace_back(OPPONENS_SOURCE_DIR);
+  return folders;
+}
+
+}  // namespace
+
+fs::path find_file(const std::string& name) {
+  require(!name.empty(), "find_file: empty name");
+  if (fs::exists(name)) return name;
+  if (fs::path(name).is_relative()) {
+    for (const fs::path& folder : data_folders()) {
+      if (fs::exists(folder / name)) return folder / name;
+    }
+  }
+  throw InputError(name + ": no such file, neither here nor in the data folder");
+}
+
+std::string recorded_name(const fs::path& file) {
+  const fs::path full = fs::weakly_canonical(file);
+  for (const fs::path& folder : data_folders()) {
+    const fs::path relative = full.lexically_relative(fs::weakly_canonical(folder));
+    if (!relative.empty() && *relative.begin() != "..") return relative.generic_string();
+  }
+  return file.generic_string();
+}
+
+}  // namespace opponens::cli

@@ -1,0 +1,18 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace opponens::cli {
+
+/// The file a user named: as given when it exists, else below the data folder ($OPPONENS_DATA, the installed
+/// share/opponens beside this program, or the source tree it was built from). Throws InputError when nowhere.
+std::filesystem::path find_file(const std::string& name);
+
+/// The name under which a found file is recorded: relative to the data folder when it lies inside, so that equal runs on
+/// two machines store equal bytes.
+std::string recorded_name(const std::filesystem::path& file);
+
+}  // namespace opponens::cli

@@ -1,0 +1,35 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 The opponens authors
+# SPDX-License-Identifier: BSD-3-Clause
+#
+# Sets up, builds and tests everything, as CI does: the release build with warnings as errors and all tests, the
+# installed package, and the sanitizer build. `scripts/test.sh release` or `sanitize` runs one part.
+set -euo pipefail
+source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
+
+run_tests() {  # PRESET ctest-options...
+  local preset="$1"
+  shift
+  say "Testing ($preset)"
+  (cd "$ROOT/build/$preset" && ctest --output-on-failure --no-tests=error -j "$(nproc)" "$@")
+}
+
+part="${1:-all}"
+case "$part" in
+  all|release|sanitize) ;;
+  *) echo "usage: scripts/test.sh [all|release|sanitize]" >&2; exit 2 ;;
+esac
+
+install_packages
+if [ "$part" != sanitize ]; then
+  configure_and_build release -DOPPONENS_WERROR=ON -DOPPONENS_TESTS=ON -DOPPONENS_EXAMPLES=ON
+  run_tests release
+fi
+if [ "$part" != release ]; then
+  # The install test and the long flows belong to the release build.
+  configure_and_build sanitize -DOPPONENS_WERROR=ON -DOPPONENS_TESTS=ON -DOPPONENS_EXAMPLES=OFF
+  # vm.overcommit and leak checks of third parties: see tests/support/sanitizer.supp
+  export LSAN_OPTIONS="suppressions=$ROOT/tests/support/lsan.supp:print_suppressions=0"
+  run_tests sanitize -LE 'release_only'
+fi
+say "All tests passed"
