@@ -21,6 +21,14 @@ Eigen::VectorXd box_half_width(const Eigen::VectorXd& variance, double alpha, Bo
 /// Smallest k whose cumulative variance share is >= 1 - beta; at least 1.
 int synergies_needed(const Eigen::VectorXd& variance, double beta);
 
+/// The box of the first k = synergies_needed(variance, beta) synergies of a basis found in x = q ./ scale.
+/// dof_effective: n of the root. scale: [n] rad per scaled unit.
+SynergyBox make_box(const SynergyBasis& basis, const Eigen::VectorXd& scale, double alpha, double beta, BoxRoot root,
+                    int dof_effective);
+
+/// Probability that one standard normal coordinate lies inside the half width: the root itself.
+double axis_probability(double alpha, BoxRoot root, int n, int k);
+
 /// Synergy coordinates y = axes' (q ./ scale - center), [k] scaled units. q: [n] rad.
 Eigen::VectorXd coordinates(const SynergyBox& box, const Eigen::VectorXd& q);
 

@@ -20,29 +20,29 @@ inline constexpr int kInterrupted = 130;
 
 /// Options of every command.
 struct Common {
-  std::filesystem::path store;
+  std::filesystem::path store{};
   std::uint64_t seed = 1;
   int threads = 0;  ///< 0: all cores
 };
 
 struct SimulateOptions {
-  Common common;
+  Common common{};
   int repetitions = 12;
 };
 struct IngestOptions {
-  Common common;
-  std::vector<std::filesystem::path> paths;
-  std::string source;
+  Common common{};
+  std::vector<std::filesystem::path> paths{};
+  std::string source{};
   bool dry_run = false;
 };
 struct RetargetOptions {
-  Common common;
+  Common common{};
   std::string hand = "models/ur5_allegro/allegro_right.yaml";
   std::string mapping = "paper";
   double hand_length = 0.19;  ///< m, wearer's
 };
 struct AnalyzeOptions {
-  Common common;
+  Common common{};
   double alpha = 0.05;
   double beta = 0.05;
   std::string transition = "likeness";
@@ -50,22 +50,22 @@ struct AnalyzeOptions {
   std::string group_by = "family";
   std::string space = "rad";
   std::string phase = "both";  ///< both | none
-  std::string input;           ///< hand | glove; empty: hand when there is any
+  std::string input{};           ///< hand | glove; empty: hand when there is any
 };
 struct GraspOptions {
-  Common common;
+  Common common{};
   std::string robot = "models/ur5_allegro/ur5_allegro_right.yaml";
   std::string scene = "models/scenes/bottle_shelf.yaml";
-  std::string object;
+  std::string object{};
   std::string group = "all";
   int count = 5;
   int max_trials = 2000;
 };
 struct PlanOptions {
-  Common common;
+  Common common{};
   std::string robot = "models/ur5_allegro/ur5_allegro_right.yaml";
   std::string scene = "models/scenes/bottle_shelf.yaml";
-  std::string object;
+  std::string object{};
   std::string planner = "synergy";
   int runs = 1;
   double time_limit = 0.0;      ///< s, 0: none
@@ -74,15 +74,15 @@ struct PlanOptions {
   double resolution = 0.02;     ///< rad
 };
 struct VerifyOptions {
-  Common common;
+  Common common{};
 };
 struct ReportOptions {
-  Common common;
+  Common common{};
   std::filesystem::path out = "report.html";
 };
 struct ShowOptions {
-  Common common;
-  std::string id;  ///< empty: list everything
+  Common common{};
+  std::string id{};  ///< empty: list everything
 };
 struct DemoOptions {
   std::filesystem::path out = "demo";

@@ -3,9 +3,12 @@
 #include "cli/resources.hpp"
 
 #include <cstdlib>
+#include <fstream>
+#include <iterator>
 #include <vector>
 
 #include "core/require.hpp"
+#include "storage/sha256.hpp"
 
 namespace opponens::cli {
 namespace {
@@ -25,7 +28,7 @@ std::vector<fs::path> data_folders() {
 }  // namespace
 
 fs::path find_file(const std::string& name) {
-  require(!name.empty(), "find_file: empty name");
+  if (name.empty()) throw InputError("an empty file name was given");
   if (fs::exists(name)) return name;
   if (fs::path(name).is_relative()) {
     for (const fs::path& folder : data_folders()) {
@@ -42,6 +45,12 @@ std::string recorded_name(const fs::path& file) {
     if (!relative.empty() && *relative.begin() != "..") return relative.generic_string();
   }
   return file.generic_string();
+}
+
+std::string file_sha256(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw InputError(file.string() + ": cannot read it");
+  return storage::sha256(std::string(std::istreambuf_iterator<char>(stream), {}));
 }
 
 }  // namespace opponens::cli

@@ -15,4 +15,7 @@ std::filesystem::path find_file(const std::string& name);
 /// two machines store equal bytes.
 std::string recorded_name(const std::filesystem::path& file);
 
+/// SHA-256 (hex) of a file's bytes. Throws InputError when it cannot be read.
+std::string file_sha256(const std::filesystem::path& file);
+
 }  // namespace opponens::cli

@@ -11,8 +11,9 @@
 namespace opponens::grasp {
 
 /// Primitive contact wrenches [6 x (m * edges)] = [force; torque / rho], torque about convention.origin, in O.
-/// Tangents: t_x = n x X (n x Z when n is along X), t_y = n x t_x; edge j at angle 2 pi j / edges. Soft finger: latitudes
-/// 90, 45, 0, -45, -90 degrees with 1, 5, 8, 5, 1 directions on the ellipsoid (1, 1, torsion_radius), as GraspIt! does.
+/// Tangents: t_x = n x X (n x Z when n is along X), t_y = n x t_x; edge j at angle 2 pi j / edges. Soft finger:
+/// latitudes 90, 45, 0, -45, -90 degrees with 1, 5, 8, 5, 1 directions on the ellipsoid (1, 1, torsion_radius), as
+/// GraspIt! does.
 Eigen::Matrix<double, 6, Eigen::Dynamic> contact_wrenches(const std::vector<Contact>& contacts,
                                                           const QualityConvention& convention);
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/grasp.hpp"
+#include "motion/contact_depth.hpp"
 #include "robot/collision.hpp"
 #include "robot/inverse_kinematics.hpp"
 #include "robot/robot_model.hpp"
@@ -12,12 +13,23 @@
 
 namespace opponens::motion {
 
+/// Arm solutions kept per grasp.
+inline constexpr int kMaxArmSolutions = 4;
+
 /// Lines 6-7 of Algorithm 1 for one grasp: inverse kinematics of pre-grasp and grasp on the same branch, limits, and
-/// collision with scene and self at both (object contacts excepted at the grasp). Fills grasp.arm_solutions.
-/// Returns an empty string when at least one solution is left, else the reason ("no IK", "arm collision", ...).
-/// free_space: checker with everything; closing: checker that lets hand and object touch.
+/// collision with scene and self at the pre-grasp and along the closing segment (object contacts excepted there).
+/// Branches of the two poses are paired by the least joint motion between them; of solutions that differ by whole turns
+/// the one nearest to zero is kept. Fills grasp.arm_solutions with at most kMaxArmSolutions, least motion first.
+/// Returns an empty string when at least one solution is left, else the reason of the solution that came furthest:
+/// "no inverse kinematics", "pre-grasp in collision: LINK-BODY", "closing segment in collision: LINK-BODY" or
+/// "closing segment too deep in the object"; arm_solutions is empty then.
+/// free_space: checker with everything; closing: checker that lets hand and object touch. X_RO: object in the robot's
+/// root. resolution: rad, spacing of checked configurations. Thread-safe.
 std::string reach(Grasp& grasp, const robot::RobotModel& robot, const robot::ArmKinematics& kinematics,
                   const Eigen::Isometry3d& X_RO, const robot::CollisionChecker& free_space,
-                  const robot::CollisionChecker& closing, double resolution);
+                  const robot::CollisionChecker& closing, double resolution, const ContactLimit& contact = {});
+
+/// A whole configuration [d] from its arm and hand parts.
+Eigen::VectorXd join(const robot::RobotModel& robot, const Eigen::VectorXd& q_arm, const Eigen::VectorXd& q_hand);
 
 }  // namespace opponens::motion

@@ -5,12 +5,14 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "core/path.hpp"
 #include "core/synergies.hpp"
+#include "motion/syn_extend.hpp"
 #include "motion/world.hpp"
 
 namespace opponens::motion {
@@ -30,21 +32,65 @@ enum class Variant {
 struct PlannerSettings {
   Variant variant = Variant::synergy;
   double step = 0.4;                     ///< rad, epsilon of Algorithm 3 in the weighted metric
-  double resolution = 0.02;              ///< rad, spacing of checked configurations in the weighted metric
+  double resolution = 0.02;              ///< rad, spacing of checked configurations: for edge_check's world
   double full_space_probability = 0.05;  ///< share of targets that are not projected: keeps probabilistic completeness
   double minimum_step = 1e-9;            ///< rad, SYNEXTEND returns nothing below it
-  std::int64_t max_iterations = 100000;
-  std::int64_t max_checks = 0;           ///< 0: unlimited
+  std::int64_t max_iterations = 100000;  ///< passes of Algorithm 2's loop
+  std::int64_t max_checks = 0;           ///< 0: unlimited; asked once per iteration, so one iteration may pass it
   double time_limit = 0.0;               ///< s of wall clock; 0: none (searches stop on counts)
   std::function<bool()> interrupted;     ///< polled once per iteration; empty: never
 };
+/// Throws std::invalid_argument naming field, value and violated constraint.
 void validate(const PlannerSettings& settings);
 
-/// One query. group_hand gives the hand's index range in q. Start tree: pre_grasp box; every goal rooted from the
-/// beginning. Same seed, same path. lower, upper, weights: [d].
+/// A root of Algorithm 2's graphs with its own PROJECT.
+struct Root {
+  Eigen::VectorXd q;   ///< [d] rad
+  Projection project;  ///< empty: the identity
+  int goal = -1;       ///< index reported when this root is reached; not used for the start
+};
+
+/// One query with projections instead of boxes. lower, upper, weights: [d].
+struct PlanQuery {
+  Root start;
+  std::vector<Root> goals;
+  std::vector<std::string> joint_names;  ///< [d]
+  Eigen::VectorXd lower;                 ///< rad, finite
+  Eigen::VectorXd upper;                 ///< rad, finite, >= lower
+  Eigen::VectorXd weights;               ///< of the joint metric, positive
+};
+
+/// Algorithm 2, PLANNER, with every valid goal rooted from the beginning. Targets are drawn uniformly within the limits
+/// from a stream of its own: same query, world, settings and seed, same path, byte for byte (unless time_limit or
+/// interrupted end it). When World::confirm is given, it is asked of each motion of the path found; a motion that fails
+/// is deleted from its graph with everything grown from it, and the search goes on. Goals outside the limits or in
+/// collision are left out; detail says how many.
+PlanResult plan(const PlanQuery& query, const World& world, const PlannerSettings& settings, std::uint64_t seed);
+
+/// The same for the paper's query: the start tree follows the pre-grasp box, every goal tree its group's box. hand:
+/// index range of the hand in q. docs/algorithms/planner.md.
 PlanResult plan(const Eigen::VectorXd& start, const SynergyBox& pre_grasp, const std::vector<GoalRoot>& goals,
                 const std::vector<std::string>& joint_names, const PlanningGroup& hand, const Eigen::VectorXd& lower,
                 const Eigen::VectorXd& upper, const Eigen::VectorXd& weights, const World& world,
                 const PlannerSettings& settings, std::uint64_t seed);
+
+/// A configuration that both graphs hold: V_a and V_b meet here.
+struct Bridge {
+  int vertex_a;
+  int vertex_b;
+};
+
+/// Algorithm 4, SYNCONNECT: q_new, just added to graph a, draws an extension of b, that one an extension of a, and so
+/// on until the graphs meet or an extension collides. As printed it need not end (docs/deviations.md), so: when the gap
+/// has not shrunk by a hundredth of epsilon during two extensions of each graph, or a step is below minimum_step, one
+/// last attempt is made by straight full-space steps towards the newest configuration. Hence at most 4 + 400 gap /
+/// epsilon extensions, and as many straight steps as the gap is long.
+std::optional<Bridge> syn_connect(int vertex_new, Graph& a, Graph& b, const StepSettings& settings, const World& world,
+                                  SearchCounts& counts);
+
+/// CONNECT of RRT-Connect (Kuffner and LaValle 2000, doi:10.1109/ROBOT.2000.844730): b is extended straight towards a
+/// vertex of a until it gets there or collides.
+std::optional<Bridge> straight_connect(int vertex_new, const Graph& a, Graph& b, const StepSettings& settings,
+                                       const World& world, SearchCounts& counts);
 
 }  // namespace opponens::motion

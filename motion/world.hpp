@@ -11,14 +11,21 @@
 
 namespace opponens::motion {
 
-/// The only two questions a planner asks the world; a faster checker can be put under them.
+/// An invalid configuration on the straight motion from q_from (exclusive, known valid) to q_to (inclusive), as a
+/// fraction in (0, 1]: the first one found in the checker's own order, which need not be the nearest to q_from; nullopt
+/// when the whole motion is valid. Adds the configurations evaluated to checks. Same arguments, same answer.
+using MotionCheck = std::function<std::optional<double>(const Eigen::VectorXd& q_from, const Eigen::VectorXd& q_to,
+                                                        std::int64_t& checks)>;
+
+/// The only two questions a planner asks the world; a faster checker can be put under them. Valid means free of
+/// collision and inside the joint limits.
 struct World {
-  /// First invalid configuration on the straight motion from q_from (exclusive, known valid) to q_to (inclusive), as a
-  /// fraction in (0, 1]; nullopt when the whole motion is valid. Adds the configurations evaluated to checks.
-  std::function<std::optional<double>(const Eigen::VectorXd& q_from, const Eigen::VectorXd& q_to, std::int64_t& checks)>
-      first_invalid;
+  MotionCheck first_invalid;
   /// Whether each row of a batch [B x d] is valid. Adds B to checks.
   std::function<std::vector<bool>(const Eigen::MatrixXd& batch, std::int64_t& checks)> free;
+  /// first_invalid asked again, more strictly (denser, or continuous), of the motions of an answer before it is
+  /// returned. Empty: an answer is not asked again.
+  MotionCheck confirm;
 };
 
 }  // namespace opponens::motion

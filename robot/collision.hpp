@@ -36,10 +36,13 @@ class CollisionChecker {
   std::vector<BodyPair> colliding_pairs(const Eigen::Ref<const Eigen::VectorXd>& q) const;
 
   struct Clearance {
-    double distance;  ///< m; 0 when colliding
-    BodyPair pair;    ///< the nearest pair
+    double distance;  ///< m; 0 when colliding, infinite when there is no pair to check
+    BodyPair pair;    ///< the nearest pair; when several collide, one of them
   };
   Clearance clearance(const Eigen::Ref<const Eigen::VectorXd>& q) const;
+
+  /// Links and scene bodies with a mesh that is not closed, sorted: such a mesh is a surface, nothing is inside it.
+  std::vector<std::string> open_meshes() const;
 
   /// The same for a free-flying robot: root at X_WR instead of the scene's (hand-only searches).
   bool free(const Eigen::Isometry3d& X_WR, const Eigen::Ref<const Eigen::VectorXd>& q) const;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <variant>
@@ -25,6 +26,7 @@ struct TriangleMesh {
   Eigen::Matrix3Xd vertices;   ///< [3 x V] m
   Eigen::Matrix3Xi triangles;  ///< [3 x F] vertex indices, counter-clockwise seen from outside
   std::string source;          ///< file or shape it came from, for messages
+  std::filesystem::path file;  ///< it was read from; empty: it was made here
 };
 
 /// Meshes are immutable and shared: the finger links of a hand repeat the same 10,000 triangles.

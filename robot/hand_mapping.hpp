@@ -15,25 +15,28 @@
 
 namespace opponens::robot {
 
-/// One robot joint that copies a glove channel: q = sign * channel * gain + offset, clipped to the limits.
+/// One robot joint that copies a glove channel: q = gain * channel + offset, clipped to the limits.
 struct JointMapping {
   std::string joint;    ///< of the robot hand
   std::string channel;  ///< of the human hand (its joint name)
-  double gain = 1.0;
+  double gain = 1.0;    ///< negative where the two count in opposite directions
   double offset = 0.0;  ///< rad
 };
 
 /// How a human hand drives a robot hand (hand.yaml, key "mapping"). --mapping paper: flexion joints copy, abduction and
 /// thumb opposition come from fingertip positions (paper, section 3.2).
 struct HandMapping {
-  std::vector<JointMapping> copied;              ///< joint-to-joint part
-  std::vector<std::string> fitted;               ///< robot joints found from fingertip positions
-  std::map<std::string, std::string> fingertips; ///< robot tip name -> human tip name
+  std::vector<JointMapping> copied;                             ///< joint-to-joint part
+  std::vector<std::string> fitted;                              ///< robot joints found from fingertip positions
+  std::map<std::string, std::string> fingertips;                ///< robot tip name -> human tip name
+  Eigen::Matrix3d R_robot_human = Eigen::Matrix3d::Identity();  ///< human palm axes in the robot's palm frame
 };
 
+/// Throws InputError when the key is absent, or names a joint or tip that the hand.yaml does not list.
 HandMapping load_hand_mapping(const std::filesystem::path& hand_yaml);
 
 /// Range-to-range calibration of recordings whose zero is unknown: per channel, rad_out = gain * rad_in + offset.
+/// Channels that are not listed are taken as they are.
 struct ChannelCalibration {
   std::vector<std::string> channels;
   Eigen::VectorXd gain;
@@ -41,12 +44,15 @@ struct ChannelCalibration {
 };
 
 /// Maps each channel's observed range [1st, 99th percentile over the given recordings of one subject] to the human
-/// hand's joint range; keeps the sign convention of the human hand model (flexion positive).
+/// hand's joint range; keeps the sign convention of the human hand model (flexion positive). channel_sign: -1 where the
+/// recording counts the other way (absent: +1). Percentiles interpolate between order statistics. A channel that does
+/// not move gets gain 0 and the joint position nearest to zero; channels that the human hand lacks are left out.
 ChannelCalibration calibrate_range(const std::vector<const Demonstration*>& recordings, const RobotModel& human,
                                    const std::map<std::string, double>& channel_sign);
 
 struct RetargetSettings {
-  double smoothness = 0.1;      ///< weight of (q_t+1 - q_t) rad against fingertip residuals in cm
+  double smoothness = 0.1;  ///< weight of (q_t+1 - q_t) rad against fingertip residuals in cm
+  double rest = 0.02;       ///< weight of (q - middle of the limits) rad, same unit: decides what tips leave open
   int max_iterations = 50;
 };
 
@@ -58,7 +64,15 @@ struct Retargeted {
 };
 
 /// Maps a recording to the robot hand. The fitted joints of all samples are one least-squares problem (Ceres) inside
-/// the joint limits, smooth over time. human: the parametric human hand scaled to the wearer.
+/// the joint limits, smooth over time: sum over samples and tips of |p - p*|^2 in cm^2, plus (smoothness dq)^2 over
+/// neighbouring samples, plus (rest (q - middle))^2. The target of a robot tip, in its palm frame, is
+///   p* = b_r + (l_r / l_h) R (p_h - b_h),
+/// where p_h is the human tip in the human palm frame, b the finger's base (the last joint origin on the way to the tip
+/// that no joint below it moves: the knuckle; for the thumb the first joint), l the length of the finger stretched out
+/// (joint to joint from the base to the tip), and R = R_robot_human. Hand joints that are neither copied nor fitted
+/// stay at the position nearest to zero. One thread, deterministic. human: the parametric human hand scaled to the
+/// wearer. Failure: a channel, joint or tip is missing (not_found), a value is not finite (invalid_input), a fitted
+/// joint moves no mapped tip (degenerate), the solver did not meet its tolerance (not_converged).
 Result<Retargeted> retarget(const Demonstration& recording, const ChannelCalibration& calibration,
                             const RobotModel& human, const RobotModel& hand, const HandMapping& mapping,
                             const RetargetSettings& settings);

@@ -15,4 +15,7 @@ RobotDescription load_robot(const std::filesystem::path& robot_yaml);
 /// Reads a hand.yaml alone: the tree below the palm link, which becomes the root (frame H).
 RobotDescription load_hand(const std::filesystem::path& hand_yaml);
 
+/// The hand of a robot: the tree below its palm link, which becomes the root (frame H).
+RobotDescription hand_of(const RobotDescription& robot);
+
 }  // namespace opponens::robot

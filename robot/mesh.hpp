@@ -26,16 +26,28 @@ TriangleMesh triangulate(const Shape& shape, int segments = 32);
 TriangleMesh merge(const std::vector<Geometry>& geometry);
 
 struct MassProperties {
-  double volume;                  ///< m^3
-  Eigen::Vector3d center_of_mass; ///< m, uniform density
+  double volume;                   ///< m^3
+  Eigen::Vector3d center_of_mass;  ///< m, uniform density
 };
 /// By the divergence theorem; meaningful for closed meshes (Mirtich 1996, doi:10.1080/10867651.1996.10487458).
 MassProperties mass_properties(const TriangleMesh& mesh);
 
-/// Every edge is shared by exactly two triangles in opposite directions.
+/// Every edge is run along as often in one direction as in the other: the surface has no boundary and encloses a
+/// volume. (Merging equal vertices can pinch a closed surface so that four triangles meet in one edge; it still is
+/// closed.)
 bool is_closed(const TriangleMesh& mesh);
 
 /// One vertex index per connected component.
 std::vector<int> component_seeds(const TriangleMesh& mesh);
+
+/// The connected components as meshes of their own, in the order of component_seeds.
+std::vector<TriangleMesh> components(const TriangleMesh& mesh);
+
+/// Points on the surface in the body frame: every surface point lies within `spacing` (m) of one, and no two are nearer
+/// than spacing / 2. Deterministic. Spheres and cylinder sides are sampled on the curved surface itself.
+std::vector<Eigen::Vector3d> surface_samples(const Geometry& geometry, double spacing);
+
+/// Appends the files that the meshes among the shapes were read from.
+void append_mesh_files(const std::vector<Geometry>& geometry, std::vector<std::filesystem::path>& files);
 
 }  // namespace opponens::robot

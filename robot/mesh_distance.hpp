@@ -12,6 +12,9 @@ namespace opponens::robot {
 
 /// Exact signed distance to a triangle mesh, by a bounding volume tree and angle-weighted pseudonormals
 /// (Baerentzen and Aanaes 2005, doi:10.1109/TVCG.2005.49). Negative inside a closed mesh. Immutable, thread-safe.
+/// Where the nearest feature is an edge of more than two triangles or a vertex in which parts of the surface merely
+/// touch, no normal tells the sign and the winding number does, in O(F). The mesh has to be free of self-intersections
+/// for the sign: of overlapping components, the nearest surface decides.
 class MeshDistance {
  public:
   struct Query {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <set>
 #include <string>
@@ -27,29 +28,29 @@ struct Mimic {
 struct Joint {
   std::string name;
   JointType type = JointType::fixed;
-  int parent = -1;  ///< link index
-  int child = -1;   ///< link index
+  int parent = -1;                                         ///< link index
+  int child = -1;                                          ///< link index
   Eigen::Isometry3d X_PJ = Eigen::Isometry3d::Identity();  ///< joint frame in the parent link, at zero
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();         ///< unit, in the joint frame
-  double lower = 0.0;     ///< rad or m
-  double upper = 0.0;     ///< rad or m
-  double velocity = 0.0;  ///< rad/s or m/s, limit
+  double lower = 0.0;                                      ///< rad or m
+  double upper = 0.0;                                      ///< rad or m
+  double velocity = 0.0;                                   ///< rad/s or m/s, limit
   std::optional<Mimic> mimic;
 };
 
 struct Link {
   std::string name;
-  int joint = -1;  ///< index of the joint that moves it; -1 for the root
+  int joint = -1;                   ///< index of the joint that moves it; -1 for the root
   std::vector<Geometry> collision;  ///< of the chosen kind: urdf collision or visual
 };
 
 /// A point of the hand's surface where contact is intended (the paper's Fig. 5), or a finger tip.
 struct SurfacePoint {
   std::string name;
-  std::string finger;    ///< "index", "middle", "ring", "thumb", "palm", ...
+  std::string finger;  ///< "index", "middle", "ring", "thumb", "palm", ...
   int link = -1;
-  Eigen::Vector3d p_L;   ///< m
-  Eigen::Vector3d n_L;   ///< unit, out of the link's surface
+  Eigen::Vector3d p_L;  ///< m
+  Eigen::Vector3d n_L;  ///< unit, out of the link's surface
 };
 
 /// A kinematic tree as loaded: links in topological order (root first), joints in the order of their child links.
@@ -63,15 +64,21 @@ struct RobotDescription {
   std::string arm_tip_link;              ///< last arm link (the hand's mount), empty for a hand alone
   std::vector<SurfacePoint> tips;
   std::vector<SurfacePoint> contact_points;
-  Eigen::VectorXd weights;               ///< [a+n] of the joint metric, default 1
+  Eigen::VectorXd weights;                           ///< [a+n] of the joint metric, default 1
   std::set<std::pair<int, int>> allowed_collisions;  ///< link index pairs (first < second) that may touch
-  std::vector<std::string> notes;        ///< what was ignored or defaulted while loading
+  std::vector<std::filesystem::path> files;          ///< it was read from, meshes included
+  std::vector<std::string> notes;                    ///< what was ignored or defaulted while loading
 };
+
+/// The same robot with every length multiplied by factor > 0: joint frames, shapes, surface points, prismatic limits.
+/// Meshes are copied.
+RobotDescription scaled(const RobotDescription& description, double factor);
 
 /// Kinematics of a tree. Immutable after construction, safe to share between threads. A configuration q = [q_a; q_h]
 /// is ordered by name as given in the description, never by position in the URDF.
 class RobotModel {
  public:
+  /// Throws std::invalid_argument when the description is inconsistent (order, names, sizes).
   explicit RobotModel(RobotDescription description);
 
   const RobotDescription& description() const { return description_; }
@@ -80,11 +87,11 @@ class RobotModel {
   int dof() const { return static_cast<int>(joint_names_.size()); }
   const PlanningGroup& arm() const { return arm_; }
   const PlanningGroup& hand() const { return hand_; }
-  const Eigen::VectorXd& lower() const { return lower_; }        ///< [d]
-  const Eigen::VectorXd& upper() const { return upper_; }        ///< [d]
-  const Eigen::VectorXd& velocity() const { return velocity_; }  ///< [d]
+  const Eigen::VectorXd& lower() const { return lower_; }                  ///< [d]
+  const Eigen::VectorXd& upper() const { return upper_; }                  ///< [d]
+  const Eigen::VectorXd& velocity() const { return velocity_; }            ///< [d]
   const Eigen::VectorXd& weights() const { return description_.weights; }  ///< [d]
-  int link_index(const std::string& name) const;                 ///< throws std::invalid_argument when absent
+  int link_index(const std::string& name) const;                           ///< throws std::invalid_argument when absent
   int palm() const { return palm_; }
 
   /// Poses X_RL of every link in the root frame R. Cost: one product per link. q: [d] rad.
@@ -101,11 +108,21 @@ class RobotModel {
   bool within_limits(const Eigen::Ref<const Eigen::VectorXd>& q, double tolerance = 1e-9) const;
 
  private:
-  struct Drive {        ///< how a joint's position follows from q
-    int index = -1;     ///< into q; -1: constant offset (fixed, or not actuated)
+  struct Drive {     ///< how a joint's position follows from q
+    int index = -1;  ///< into q; -1: constant offset (fixed, or not actuated)
     double multiplier = 1.0;
     double offset = 0.0;
   };
+
+  /// Rotation of a revolute joint about its axis, parent to child: fixed + sin(q) odd + (1 - cos(q)) even (Rodrigues).
+  struct Turn {
+    Eigen::Matrix3d fixed;
+    Eigen::Matrix3d odd;
+    Eigen::Matrix3d even;
+  };
+
+  void index_joints();
+  void resolve_drives();
 
   RobotDescription description_;
   std::vector<std::string> joint_names_;
@@ -114,7 +131,8 @@ class RobotModel {
   Eigen::VectorXd lower_;
   Eigen::VectorXd upper_;
   Eigen::VectorXd velocity_;
-  std::vector<Drive> drives_;
+  std::vector<Drive> drives_;  ///< [joints]
+  std::vector<Turn> turns_;    ///< [joints]
   int palm_ = 0;
 };
 

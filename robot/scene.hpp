@@ -25,6 +25,7 @@ struct Scene {
   std::string support;   ///< body the object stands on; may be empty
   Eigen::VectorXd start; ///< [d] rad start configuration by the robot's joint order; empty: not given
   std::vector<std::string> start_joints;  ///< names for start
+  std::vector<std::filesystem::path> files;  ///< it was read from, meshes included
 
   const SceneBody& body(const std::string& name) const;  ///< throws std::invalid_argument when absent
 };

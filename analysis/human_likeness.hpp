@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <Eigen/Core>
+
+namespace opponens::analysis {
+
+/// What human-likeness is measured against; the name is shown beside every value.
+struct LikenessReference {
+  std::string name;            ///< e.g. "free motions, simulated" or "grasp phase of family 2"
+  Eigen::MatrixXd covariance;  ///< [n x n] rad^2 of the reference motions of the hand
+};
+
+/// Human-likeness of a hand path, in (0, 100]. The formula behind the paper's Table 2 is unpublished; this one is ours.
+/// With x a segment of the path in hand space, Sigma the reference covariance and s1 its largest standard deviation:
+///   c(x) = sqrt(x' Sigma x) / (|x| s1),   HL = 100 sum |x| c(x) / sum |x|.
+/// 100 when the hand moves along the reference's first principal axis only. nullopt when the hand does not move or the
+/// reference has no variance. Splitting a segment does not change it. q_h: [N x n] rad, row = waypoint. O(N n^2).
+std::optional<double> human_likeness(const Eigen::Ref<const Eigen::MatrixXd>& q_h, const LikenessReference& reference);
+
+}  // namespace opponens::analysis

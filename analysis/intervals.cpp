@@ -1,0 +1,111 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/intervals.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/pca.hpp"
+#include "analysis/statistics.hpp"
+#include "core/require.hpp"
+
+namespace opponens::analysis {
+namespace {
+
+// A share within this of 0 or 1 is one; its logit (36.7) would be rounding, not information.
+constexpr double kShareFloor = 1e-15;
+
+double logit(double p) {
+  const double inside = std::clamp(p, kShareFloor, 1.0 - kShareFloor);
+  return std::log(inside / (1.0 - inside));
+}
+
+double logistic(double x) { return 1.0 / (1.0 + std::exp(-x)); }
+
+void check(double confidence, std::size_t replicates) {
+  require(confidence > 0.0 && confidence < 1.0, "interval: confidence must be in (0, 1)");
+  require(replicates >= 2, "interval: at least 2 bootstrap replicates");
+}
+
+}  // namespace
+
+Eigen::VectorXi resample_counts(int clusters, Rng& rng) {
+  require(clusters >= 2, "bootstrap: at least 2 clusters");
+  Eigen::VectorXi counts = Eigen::VectorXi::Zero(clusters);
+  for (int draw = 0; draw < clusters; ++draw) {
+    ++counts[static_cast<Eigen::Index>(rng.index(static_cast<std::uint64_t>(clusters)))];
+  }
+  return counts;
+}
+
+double bootstrap_quantile(const std::vector<double>& sorted, double p) {
+  require(!sorted.empty() && p >= 0.0 && p <= 1.0, "bootstrap_quantile: empty sample, or p outside [0, 1]");
+  const auto size = static_cast<double>(sorted.size());
+  const double rank = std::clamp((size + 1.0) * p, 1.0, size) - 1.0;
+  const auto below = static_cast<std::size_t>(rank);
+  const std::size_t above = std::min(below + 1, sorted.size() - 1);
+  const double part = rank - static_cast<double>(below);
+  return sorted[below] + part * (sorted[above] - sorted[below]);
+}
+
+Interval basic_logit_interval(double estimate, std::vector<double> replicates, double confidence) {
+  check(confidence, replicates.size());
+  if (estimate <= kShareFloor || estimate >= 1.0 - kShareFloor) return {estimate, estimate};
+  std::transform(replicates.begin(), replicates.end(), replicates.begin(), logit);
+  std::sort(replicates.begin(), replicates.end());
+  const double tail = 0.5 * (1.0 - confidence);
+  const double centre = 2.0 * logit(estimate);
+  return {logistic(centre - bootstrap_quantile(replicates, 1.0 - tail)),
+          logistic(centre - bootstrap_quantile(replicates, tail))};
+}
+
+Interval percentile_interval(std::vector<double> replicates, double confidence) {
+  check(confidence, replicates.size());
+  std::sort(replicates.begin(), replicates.end());
+  const double tail = 0.5 * (1.0 - confidence);
+  return {bootstrap_quantile(replicates, tail), bootstrap_quantile(replicates, 1.0 - tail)};
+}
+
+Eigen::MatrixXd bootstrap_cumulative_variance(const std::vector<SampleStatistics>& clusters, int replicates, Rng& rng) {
+  require(replicates >= 2, "bootstrap: at least 2 replicates");
+  require(clusters.size() >= 2, "bootstrap: at least 2 clusters");
+  Eigen::MatrixXd shares(replicates, clusters.front().mean.size());
+  for (int replicate = 0; replicate < replicates; ++replicate) {
+    const Eigen::VectorXi counts = resample_counts(static_cast<int>(clusters.size()), rng);
+    SampleStatistics drawn;
+    for (std::size_t c = 0; c < clusters.size(); ++c) {
+      const int times = counts[static_cast<Eigen::Index>(c)];
+      if (times == 0) continue;
+      SampleStatistics repeated = clusters[c];
+      repeated.count *= times;
+      drawn = merge(drawn, repeated);
+    }
+    shares.row(replicate) = cumulative_variance(principal_axes(drawn).variance).transpose();
+  }
+  return shares;
+}
+
+std::vector<Interval> cumulative_variance_intervals(const std::vector<SampleStatistics>& clusters, int replicates,
+                                                    double confidence, Rng& rng) {
+  const Eigen::VectorXd estimate = cumulative_variance(principal_axes(pooled(clusters)).variance);
+  const Eigen::MatrixXd shares = bootstrap_cumulative_variance(clusters, replicates, rng);
+  std::vector<Interval> intervals;
+  for (Eigen::Index i = 0; i < estimate.size(); ++i) {
+    const Eigen::VectorXd column = shares.col(i);
+    intervals.push_back(basic_logit_interval(estimate[i], {column.begin(), column.end()}, confidence));
+  }
+  return intervals;
+}
+
+Interval ratio_interval(const Eigen::VectorXd& inside, const Eigen::VectorXd& total, int replicates, double confidence,
+                        Rng& rng) {
+  require(inside.size() == total.size() && (total.array() > 0.0).all(), "ratio_interval: a cluster has no samples");
+  std::vector<double> ratios;
+  for (int replicate = 0; replicate < replicates; ++replicate) {
+    const Eigen::VectorXd counts = resample_counts(static_cast<int>(total.size()), rng).cast<double>();
+    ratios.push_back(counts.dot(inside) / counts.dot(total));
+  }
+  return basic_logit_interval(inside.sum() / total.sum(), std::move(ratios), confidence);
+}
+
+}  // namespace opponens::analysis

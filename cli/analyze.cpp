@@ -1,0 +1,178 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/analyze.hpp"
+
+#include <cstdio>
+
+#include "cli/commands.hpp"
+#include "cli/json.hpp"
+#include "cli/resources.hpp"
+#include "cli/stored.hpp"
+#include "core/require.hpp"
+#include "robot/load_robot.hpp"
+#include "robot/robot_model.hpp"
+#include "storage/codec.hpp"
+
+namespace opponens::cli {
+namespace {
+
+using analysis::Analysis;
+using analysis::AnalysisSettings;
+
+analysis::BoxRoot box_root(const std::string& name) {
+  if (name == "k") return analysis::BoxRoot::k;
+  return name == "literal" ? analysis::BoxRoot::literal : analysis::BoxRoot::n;
+}
+
+const char* rule_name(analysis::TransitionRule rule) {
+  return rule == analysis::TransitionRule::likeness ? "likeness" : "changepoint";
+}
+
+/// What is analysed: hand motions when there are any, else the glove recordings.
+std::vector<Stored<Demonstration>> input_motions(const storage::Store& store, const std::string& input) {
+  auto motions = input == "glove" ? recordings(store) : hand_motions(store);
+  if (motions.empty() && input.empty()) motions = recordings(store);
+  if (motions.empty()) {
+    throw InputError(store.directory().string() + ": nothing to analyse" +
+                     (input == "hand" ? "; run: opponens retarget" : "; run: opponens simulate, or opponens ingest"));
+  }
+  return motions;
+}
+
+/// Joint ranges for --space normalized: those of the hand that the motions were mapped to.
+analysis::JointRanges joint_ranges(const std::vector<Stored<Demonstration>>& motions) {
+  const auto& record = motions.front().record;
+  if (record.kind != kHandMotion) throw InputError("--space normalized needs motions of a robot hand; run: opponens retarget");
+  const robot::RobotModel hand(robot::load_hand(find_file(parameters_of(record).at("hand"))));
+  return {hand.lower(), hand.upper()};
+}
+
+AnalysisSettings settings_from(const AnalyzeOptions& options, const std::vector<Stored<Demonstration>>& motions) {
+  AnalysisSettings settings;
+  settings.alpha = options.alpha;
+  settings.beta = options.beta;
+  settings.box_root = box_root(options.box_root);
+  settings.group_by = options.group_by;
+  settings.seed = options.common.seed;
+  if (options.phase == "none") {
+    settings.transition.reset();
+  } else if (options.transition == "changepoint") {
+    settings.transition = analysis::TransitionRule::changepoint;
+  }
+  if (options.space == "normalized") settings.normalize_by = joint_ranges(motions);
+  return settings;
+}
+
+Json interval_json(const std::optional<analysis::Interval>& interval) {
+  return interval ? Json{number(interval->low), number(interval->high)} : Json(nullptr);
+}
+
+Json coverage_json(const analysis::Coverage& coverage) {
+  return {{"in_sample", number(coverage.in_sample)},
+          {"held_out", number(coverage.held_out)},
+          {"interval", interval_json(coverage.interval)},
+          {"nominal", number(coverage.nominal)}};
+}
+
+Json group_json(const SynergyGroup& group, const analysis::GroupReport& found) {
+  Json intervals = Json::array();
+  for (const auto& interval : found.intervals) intervals.push_back({interval.low, interval.high});
+  return {{"name", group.name},
+          {"phase", group.phase},
+          {"samples", found.samples},
+          {"recordings", found.recordings},
+          {"clusters", found.clusters},
+          {"cluster", found.cluster},
+          {"dof_effective", group.dof_effective},
+          {"dropped_channels", group.dropped_channels},
+          {"cumulative_variance", array(found.cumulative_variance)},
+          {"cumulative_variance_interval", intervals},
+          {"k", found.k},
+          {"half_width", array(group.box.half_width)},
+          {"coverage", coverage_json(found.coverage.full)},
+          {"coverage_k", coverage_json(found.coverage.kept)}};
+}
+
+Json transition_json(const analysis::TransitionReport& found, analysis::TransitionRule rule) {
+  const bool likeness = rule == analysis::TransitionRule::likeness;
+  const auto& one = likeness ? found.likeness : found.changepoint;
+  return {{"demonstration", found.demonstration},
+          {"index", one.index},
+          {"time_s", number(one.time_s)},
+          {"fraction", number(one.fraction)},
+          {"method", rule_name(rule)},
+          {"error_fraction", number(likeness ? found.likeness_error : found.changepoint_error)}};
+}
+
+std::vector<const SynergyGroup*> groups_in_order(const SynergySet& set) {
+  std::vector<const SynergyGroup*> groups = {&set.pre_grasp};
+  for (const auto& group : set.grasp) groups.push_back(&group);
+  return groups;
+}
+
+/// The result document; the transitions of the rule in force come first.
+Json analysis_json(const Analysis& found, const AnalysisSettings& settings) {
+  Json result = document("analyze");
+  result["groups"] = Json::array();
+  const auto groups = groups_in_order(found.synergies);
+  for (std::size_t i = 0; i < groups.size(); ++i) result["groups"].push_back(group_json(*groups[i], found.groups[i]));
+  result["joint_names"] = found.synergies.joint_names;
+  result["transitions"] = Json::array();
+  using analysis::TransitionRule;
+  const auto first = settings.transition.value_or(TransitionRule::likeness);
+  const auto second = first == TransitionRule::likeness ? TransitionRule::changepoint : TransitionRule::likeness;
+  for (const auto rule : {first, second}) {
+    for (const auto& one : found.transitions) result["transitions"].push_back(transition_json(one, rule));
+  }
+  return result;
+}
+
+void say_groups(const Console& console, const Analysis& found) {
+  console.say("group        recordings  samples  dof   k   variance of the first 1, 3, 5 synergies");
+  const auto groups = groups_in_order(found.synergies);
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    const auto& variance = found.groups[i].cumulative_variance;
+    const auto percent = [&](int k) { return 100.0 * variance(std::min<Eigen::Index>(k, variance.size()) - 1); };
+    char line[200];
+    std::snprintf(line, sizeof line, "%-12s %10d %8d %4d %3d   %5.1f %%  %5.1f %%  %5.1f %%", groups[i]->name.c_str(),
+                  found.groups[i].recordings, found.groups[i].samples, groups[i]->dof_effective, found.groups[i].k,
+                  percent(1), percent(3), percent(5));
+    console.say(line);
+  }
+}
+
+Json parameters_json(const AnalyzeOptions& options) {
+  return {{"alpha", options.alpha},       {"beta", options.beta},         {"transition", options.transition},
+          {"box_root", options.box_root}, {"group_by", options.group_by}, {"space", options.space},
+          {"phase", options.phase},       {"input", options.input}};
+}
+
+}  // namespace
+
+int analyze(const AnalyzeOptions& options, const Console& console) {
+  storage::Store store(options.common.store, false);
+  const RunLog log(store, "analyze", 1);
+  const auto motions = input_motions(store, options.input);
+  const AnalysisSettings settings = settings_from(options, motions);
+  std::vector<Demonstration> demonstrations;
+  std::vector<std::string> inputs;
+  for (const auto& motion : motions) {
+    demonstrations.push_back(motion.value);
+    inputs.push_back(motion.id);
+  }
+  const auto found = analysis::analyze(demonstrations, settings);
+  if (!found) {
+    Console::warn(found.error().detail);
+    return found.error().code == FailureCode::invalid_input ? kInvalid : kNoAnswer;
+  }
+  const Json result = analysis_json(*found, settings);
+  auto record = storage::encode(found->synergies, provenance("analyze", inputs, {}, parameters_json(options),
+                                                             options.common.seed));
+  record.fields["analysis"] = result.dump();
+  log.finish(store.commit({record}));
+  say_groups(console, *found);
+  console.document(result.dump());
+  return kDone;
+}
+
+}  // namespace opponens::cli

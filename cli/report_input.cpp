@@ -1,0 +1,295 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/report_input.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <functional>
+#include <set>
+#include <sstream>
+
+#include "analysis/analyze.hpp"
+#include "cli/json.hpp"
+#include "cli/resources.hpp"
+#include "cli/stored.hpp"
+#include "cli/world.hpp"
+#include "storage/codec.hpp"
+
+namespace opponens::cli {
+namespace {
+
+using namespace opponens::report;
+
+std::string text_field(const storage::Record& record, const std::string& name) {
+  const auto found = record.fields.find(name);
+  const auto* text = found == record.fields.end() ? nullptr : std::get_if<std::string>(&found->second);
+  return text == nullptr ? std::string() : *text;
+}
+
+std::optional<storage::Record> newest(const storage::Store& store, const char* kind) {
+  const auto entries = store.list(kind);
+  if (entries.empty()) return std::nullopt;
+  return store.read(entries.back().id);
+}
+
+std::string group_label(const Demonstration& motion, const std::string& group_by) {
+  const auto found = motion.labels.find(group_by);
+  return found == motion.labels.end() ? "(no " + group_by + ")" : found->second;
+}
+
+bool is_free_motion(const Demonstration& motion) {
+  const auto kind = motion.labels.find("kind");
+  return kind != motion.labels.end() && kind->second == "free";
+}
+
+void count_motion(const Demonstration& motion, const std::string& group_by, std::map<std::string, RecordingGroup>& groups) {
+  const std::string name = is_free_motion(motion) ? "free motions" : group_label(motion, group_by);
+  const double seconds = motion.time(motion.time.size() - 1) - motion.time(0);
+  auto& group = groups[name];
+  group.duration = group.recordings == 0
+                       ? Interval{seconds, seconds}
+                       : Interval{std::min(group.duration.low, seconds), std::max(group.duration.high, seconds)};
+  group.name = name;
+  group.mean_duration = (group.mean_duration * group.recordings + seconds) / (group.recordings + 1);
+  group.recordings += 1;
+  group.samples += static_cast<int>(motion.time.size());
+}
+
+DemonstrationPart demonstration_part(const std::vector<Stored<Demonstration>>& motions, const std::string& group_by) {
+  DemonstrationPart part;
+  part.grouped_by = group_by;
+  std::map<std::string, RecordingGroup> groups;
+  double squares = 0.0;
+  int mapped = 0;
+  for (const auto& motion : motions) {
+    if (motion.value.origin == Origin::simulated) ++part.simulated;
+    count_motion(motion.value, group_by, groups);
+    const auto residual = motion.record.fields.find("tip_residual_rms");
+    if (residual == motion.record.fields.end()) continue;
+    const double value = std::get<double>(residual->second);
+    squares += value * value;
+    ++mapped;
+  }
+  for (auto& [name, group] : groups) part.groups.push_back(std::move(group));
+  if (mapped > 0) {
+    part.mapping = parameters_of(motions.front().record).value("mapping", "");
+    part.tip_residual = std::sqrt(squares / mapped);
+  }
+  part.source = part.simulated > 0 ? "Made by opponens simulate; no human was recorded." : "Recorded from people.";
+  part.example = motions.front().value;
+  return part;
+}
+
+std::optional<double> optional_number(const Json& value) {
+  return value.is_number() ? std::optional<double>(value.get<double>()) : std::nullopt;
+}
+
+/// Known transition of a motion as a fraction of its duration.
+std::optional<double> known_fraction(const Demonstration& motion) {
+  if (!motion.known_transition) return std::nullopt;
+  const double begin = motion.time(0);
+  return (*motion.known_transition - begin) / (motion.time(motion.time.size() - 1) - begin);
+}
+
+std::optional<TransitionCurves> example_curves(const Demonstration& motion) {
+  const auto curves = analysis::transition_curves(motion, {});
+  if (!curves) return std::nullopt;
+  using analysis::TransitionRule;
+  TransitionCurves example;
+  example.demonstration = motion.id;
+  example.time = motion.time.segment(curves->first, curves->log_likeness.size());
+  example.log_likeness = curves->log_likeness;
+  example.changepoint_cost = curves->changepoint;
+  example.likeness_time = analysis::transition(motion, *curves, TransitionRule::likeness).time_s;
+  example.changepoint_time = analysis::transition(motion, *curves, TransitionRule::changepoint).time_s;
+  example.known_time = motion.known_transition;
+  return example;
+}
+
+TransitionPart transition_part(const std::vector<Stored<Demonstration>>& motions, const Json& found,
+                               const std::string& method) {
+  TransitionPart part;
+  part.method = method;
+  std::map<std::string, TransitionFractions> by_id;
+  for (const auto& one : found.at("transitions")) {
+    auto& entry = by_id[one.at("demonstration")];
+    (one.at("method") == "likeness" ? entry.likeness : entry.changepoint) = one.at("fraction").get<double>();
+  }
+  for (const auto& motion : motions) {
+    const auto entry = by_id.find(motion.value.id);
+    if (entry == by_id.end()) continue;
+    if (!part.example) part.example = example_curves(motion.value);
+    entry->second.demonstration = motion.value.id;
+    entry->second.known = known_fraction(motion.value);
+    part.all.push_back(entry->second);
+  }
+  return part;
+}
+
+std::optional<Coverage> coverage_from(const Json& json) {
+  Coverage coverage;
+  coverage.nominal = json.at("nominal");
+  coverage.in_sample = json.at("in_sample");
+  coverage.held_out = optional_number(json.at("held_out"));
+  if (json.at("interval").is_array()) coverage.interval = Interval{json["interval"][0], json["interval"][1]};
+  return coverage;
+}
+
+SynergyPart synergy_part(const Stored<SynergySet>& synergies, const Json& found) {
+  SynergyPart part;
+  const Json parameters = parameters_of(synergies.record);
+  part.joint_names = synergies.value.joint_names;
+  part.grouped_by = parameters.at("group_by");
+  part.box_root = parameters.at("box_root");
+  part.cluster = found.at("groups").at(0).at("cluster");
+  std::vector<SynergyGroup> groups = {synergies.value.pre_grasp};
+  groups.insert(groups.end(), synergies.value.grasp.begin(), synergies.value.grasp.end());
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    const Json& json = found.at("groups").at(i);
+    SynergyItem item;
+    item.group = groups[i];
+    item.samples = json.at("samples");
+    const Json& intervals = json.at("cumulative_variance_interval");
+    item.cumulative_low.resize(static_cast<Eigen::Index>(intervals.size()));
+    item.cumulative_high.resize(item.cumulative_low.size());
+    for (std::size_t j = 0; j < intervals.size(); ++j) {
+      item.cumulative_low(static_cast<Eigen::Index>(j)) = intervals[j][0];
+      item.cumulative_high(static_cast<Eigen::Index>(j)) = intervals[j][1];
+    }
+    item.full_box = coverage_from(json.at("coverage"));
+    item.reduced_box = coverage_from(json.at("coverage_k"));
+    part.groups.push_back(std::move(item));
+  }
+  return part;
+}
+
+GraspPart grasp_part(const storage::Store& store, const std::string& synergies, const Json& world,
+                     const std::map<std::string, bool>& verdicts) {
+  GraspPart part;
+  part.object = world.at("object");
+  for (auto& stored : grasps_of(store, synergies, world)) {
+    const auto verdict = verdicts.find(stored.id);
+    part.items.push_back({stored.id, std::move(stored.value),
+                          verdict == verdicts.end() ? std::nullopt : std::optional<bool>(verdict->second)});
+  }
+  std::stable_sort(part.items.begin(), part.items.end(), [](const GraspItem& a, const GraspItem& b) {
+    return a.grasp.quality.epsilon.value_or(-1.0) > b.grasp.quality.epsilon.value_or(-1.0);
+  });
+  for (const auto& entry : store.list(kGraspSearch)) {
+    const auto record = store.read(entry.id);
+    if (entry.inputs != std::vector<std::string>{synergies} || parameters_of(record).at("world") != world) continue;
+    const Json summary = Json::parse(text_field(record, "summary"));
+    part.trials += summary.at("trials").get<std::int64_t>();
+    for (const auto& [reason, count] : summary.at("rejected").items()) part.rejected[reason] += count.get<std::int64_t>();
+  }
+  return part;
+}
+
+PathPart path_part(const std::string& id, const storage::Record& record) {
+  const Json parameters = parameters_of(record);
+  PathPart part;
+  part.id = id;
+  PlanRun run;
+  run.planner = parameters.at("planner");
+  run.seed = record.provenance.seed;
+  run.result = storage::decode_plan_result(record);
+  for (const auto& one : Json::parse(text_field(record, "human_likeness"))) {
+    run.human_likeness.push_back({optional_number(one.at("value")), one.at("reference")});
+  }
+  part.path.joint_names = run.result.path.joint_names;
+  part.runs.push_back(std::move(run));
+  part.goal_grasp = text_field(record, "goal_grasp");
+  part.path.waypoints = std::get<Eigen::MatrixXd>(record.fields.at("motion"));
+  part.times = std::get<Eigen::VectorXd>(record.fields.at("times"));
+  part.pregrasp = static_cast<int>(std::get<std::int64_t>(record.fields.at("pregrasp_row")));
+  return part;
+}
+
+VerifyPart verify_part(const Json& found) {
+  VerifyPart part;
+  part.checks = found.at("checks").get<std::vector<std::string>>();
+  part.checked = found.at("checked");
+  part.worst_clearance = optional_number(found.at("worst_clearance_m"));
+  part.worst_pair = found.value("worst_pair", "");
+  for (const auto& one : found.at("verdicts")) {
+    part.verdicts.push_back({one.at("id"), one.at("kind"), one.at("passed"), one.at("reason")});
+  }
+  return part;
+}
+
+std::vector<ProvenanceItem> chain_of(const storage::Store& store, const std::string& id) {
+  std::vector<ProvenanceItem> items;
+  std::set<std::string> seen;
+  const std::function<void(const std::string&)> add = [&](const std::string& object) {
+    if (!seen.insert(object).second) return;
+    const auto record = store.read(object);
+    const auto& origin = record.provenance;
+    items.push_back({object, record.kind, record.name, origin.command, origin.inputs, origin.files, origin.parameters,
+                     origin.seed, origin.program_version});
+    for (const auto& input : origin.inputs) add(input);
+  };
+  add(id);
+  return items;
+}
+
+/// The run log, and the planner's share of it: everything that differs from run to run.
+RunPart run_part(const storage::Store& store) {
+  RunPart part;
+  std::ifstream file(store.directory() / "runs.jsonl");
+  std::ostringstream text;
+  text << file.rdbuf();
+  part.log = text.str();
+  std::istringstream lines(part.log);
+  for (std::string line; std::getline(lines, line);) {
+    const Json run = Json::parse(line, nullptr, false);
+    if (run.is_object() && run.value("command", "") == "plan") part.planning_seconds = optional_number(run["wall_seconds"]);
+  }
+  return part;
+}
+
+void add_world_and_results(const storage::Store& store, const std::string& synergies, ReportInput& input) {
+  std::map<std::string, bool> verdicts;
+  if (const auto record = newest(store, kVerdicts)) {
+    const Json found = Json::parse(text_field(*record, "verdicts"));
+    input.verification = verify_part(found);
+    for (const auto& verdict : input.verification->verdicts) verdicts[verdict.id] = verdict.passed;
+  }
+  const auto path_entries = store.list(kPath);
+  const auto grasp_entries = store.list(kGrasp);
+  if (path_entries.empty() && grasp_entries.empty()) return;
+  const std::string newest_id = path_entries.empty() ? grasp_entries.back().id : path_entries.back().id;
+  const storage::Record record = store.read(newest_id);
+  const Json world = parameters_of(record).at("world");
+  NamedWorld loaded = load_world(world.at("robot"), world.at("scene"), world.at("object"));
+  input.robot = std::move(loaded.robot);
+  input.hand = std::move(loaded.hand);
+  input.scene = std::move(loaded.scene);
+  input.grasps = grasp_part(store, synergies, world, verdicts);
+  if (!path_entries.empty()) input.path = path_part(newest_id, record);
+  input.provenance = chain_of(store, newest_id);
+}
+
+}  // namespace
+
+ReportInput report_input(const storage::Store& store) {
+  ReportInput input;
+  input.program_version = OPPONENS_VERSION;
+  input.run = run_part(store);
+  auto motions = hand_motions(store);
+  if (motions.empty()) motions = recordings(store);
+  if (store.list(kSynergySet).empty()) {
+    if (!motions.empty()) input.demonstrations = demonstration_part(motions, "family");
+    return input;
+  }
+  const auto synergies = newest_synergies(store);
+  const Json parameters = parameters_of(synergies.record);
+  const Json found = Json::parse(text_field(synergies.record, "analysis"));
+  input.demonstrations = demonstration_part(motions, parameters.at("group_by"));
+  input.transitions = transition_part(motions, found, parameters.at("transition"));
+  input.synergies = synergy_part(synergies, found);
+  input.provenance = chain_of(store, synergies.id);
+  add_world_and_results(store, synergies.id, input);
+  return input;
+}
+
+}  // namespace opponens::cli

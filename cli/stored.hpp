@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "core/demonstration.hpp"
+#include "core/grasp.hpp"
+#include "core/synergies.hpp"
+#include "storage/store.hpp"
+
+namespace opponens::cli {
+
+// Kinds of stored objects; the library's codecs know the types, these names say what an object is in the flow.
+inline constexpr const char* kRecording = "demonstration";       ///< a glove recording
+inline constexpr const char* kHandMotion = "hand_demonstration"; ///< the same, mapped to a robot hand
+inline constexpr const char* kSynergySet = "synergy_set";
+inline constexpr const char* kGrasp = "grasp";
+inline constexpr const char* kGraspSearch = "grasp_search";      ///< trials and rejections of one group's search
+inline constexpr const char* kPath = "path";
+inline constexpr const char* kVerdicts = "verification";
+
+/// A decoded object with its id.
+template <typename T>
+struct Stored {
+  std::string id;
+  storage::Record record;
+  T value;
+};
+
+/// Provenance of something this program makes now.
+storage::Provenance provenance(const std::string& command, std::vector<std::string> inputs,
+                               const std::vector<std::filesystem::path>& files, const nlohmann::json& parameters,
+                               std::uint64_t seed);
+
+std::vector<Stored<Demonstration>> recordings(const storage::Store& store);
+/// The newest mapping of each recording.
+std::vector<Stored<Demonstration>> hand_motions(const storage::Store& store);
+/// The newest synergy set. Throws InputError saying which command makes one when there is none.
+Stored<SynergySet> newest_synergies(const storage::Store& store);
+/// Grasps made from a synergy set with the given robot, scene and object.
+std::vector<Stored<Grasp>> grasps_of(const storage::Store& store, const std::string& synergies,
+                                     const nlohmann::json& world);
+
+/// The parameters that tie grasps and paths to a robot, a scene and an object.
+nlohmann::json world_parameters(const std::string& robot, const std::string& scene, const std::string& object);
+/// Robot, scene and object that a stored object was made with.
+nlohmann::json parameters_of(const storage::Record& record);
+
+/// Appends a line about this run: command, what it stored, date, wall and CPU seconds, host, threads.
+class RunLog {
+ public:
+  RunLog(const storage::Store& store, std::string command, int threads);
+  /// Seconds of CPU used by this process since construction.
+  double cpu_seconds() const;
+  void finish(const std::vector<std::string>& stored) const;
+
+ private:
+  const storage::Store& store_;
+  std::string command_;
+  int threads_;
+  double wall_begin_;
+  double cpu_begin_;
+};
+
+/// Number of threads to use: the option, or all cores when it is 0.
+int thread_count(int option);
+
+}  // namespace opponens::cli

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/world.hpp"
+
+#include <algorithm>
+
+#include "cli/resources.hpp"
+#include "cli/stored.hpp"
+#include "core/require.hpp"
+#include "robot/load_robot.hpp"
+
+namespace opponens::cli {
+
+NamedWorld load_world(const std::string& robot_file, const std::string& scene_file, const std::string& object) {
+  const auto robot_path = find_file(robot_file);
+  const auto scene_path = find_file(scene_file);
+  robot::RobotDescription description = robot::load_robot(robot_path);
+  robot::RobotDescription hand = robot::hand_of(description);
+  robot::Scene scene = robot::load_scene(scene_path);
+  const std::string name = object.empty() ? scene.object : object;
+  if (name.empty()) throw InputError(scene_file + ": names no object to grasp; use --object");
+  const bool known = std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                                 [&](const robot::SceneBody& body) { return body.name == name; });
+  if (!known) throw InputError("--object " + name + ": no such body in " + scene_file);
+  std::vector<std::filesystem::path> files = description.files;
+  files.insert(files.end(), scene.files.begin(), scene.files.end());
+  return {robot::RobotModel(std::move(description)),
+          robot::RobotModel(std::move(hand)),
+          std::move(scene),
+          name,
+          world_parameters(robot_file, scene_file, name),
+          std::move(files)};
+}
+
+void require_same_joints(const SynergySet& synergies, const robot::RobotModel& hand) {
+  if (synergies.joint_names == hand.joint_names()) return;
+  std::string expected;
+  for (const auto& name : hand.joint_names()) expected += (expected.empty() ? "" : " ") + name;
+  throw InputError("the newest synergies are about other joints than this hand's (" + expected +
+                   "); run: opponens retarget --hand, then opponens analyze");
+}
+
+Eigen::VectorXd start_configuration(const robot::RobotModel& robot, const robot::Scene& scene) {
+  Eigen::VectorXd q(robot.dof());
+  for (int i = 0; i < robot.dof(); ++i) {
+    const auto& name = robot.joint_names()[static_cast<std::size_t>(i)];
+    const auto found = std::find(scene.start_joints.begin(), scene.start_joints.end(), name);
+    if (found == scene.start_joints.end()) {
+      throw InputError(scene.name + ": the scene's start configuration lacks joint " + name);
+    }
+    q(i) = scene.start(found - scene.start_joints.begin());
+  }
+  return q;
+}
+
+}  // namespace opponens::cli

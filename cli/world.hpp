@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/json.hpp"
+#include "core/synergies.hpp"
+#include "robot/robot_model.hpp"
+#include "robot/scene.hpp"
+
+namespace opponens::cli {
+
+/// A robot, a scene and the object to grasp, as the user named them.
+struct NamedWorld {
+  robot::RobotModel robot;
+  robot::RobotModel hand;  ///< the tree below the palm
+  robot::Scene scene;
+  std::string object;
+  Json parameters;                           ///< what ties stored objects to this world
+  std::vector<std::filesystem::path> files;  ///< hashed into the provenance
+
+  Eigen::Isometry3d X_RO() const { return scene.X_WR.inverse() * scene.body(object).X_WB; }
+};
+
+/// Loads them; an empty object name takes the scene's own. Throws InputError in one sentence.
+NamedWorld load_world(const std::string& robot_file, const std::string& scene_file, const std::string& object);
+
+/// Throws InputError unless the synergies are about this hand's joints, in its order.
+void require_same_joints(const SynergySet& synergies, const robot::RobotModel& hand);
+
+/// The scene's start configuration in the robot's joint order. Throws InputError when it has none or a joint is missing.
+Eigen::VectorXd start_configuration(const robot::RobotModel& robot, const robot::Scene& scene);
+
+}  // namespace opponens::cli

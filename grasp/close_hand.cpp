@@ -1,0 +1,322 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grasp/close_hand.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "analysis/synergy_box.hpp"
+
+namespace opponens::grasp {
+namespace {
+
+constexpr double kTouch = 0.0002;          // m, contact is met within this
+constexpr double kExactWithin = 0.004;     // m, nearer points are measured on the mesh instead of the grid
+constexpr double kObstacleMargin = 0.003;  // m, a finger stops this far from support and obstacles
+constexpr double kSelfMargin = 0.001;      // m, and this far from the hand's other links
+constexpr double kFar = 0.05;              // m, distances beyond it do not matter
+constexpr double kMaxRetreat = 0.03;       // m
+constexpr double kMaxAdvance = 0.02;       // m
+constexpr double kMaxTravel = 1.5;         // rad of the fastest joint of a finger
+constexpr double kMaxOpening = 1.2;        // rad
+constexpr int kMaxSteps = 80;
+
+struct Clearance {
+  double value = std::numeric_limits<double>::infinity();  ///< m
+  int link = -1;                                           ///< nearest link
+};
+
+/// What a moving part of the hand looks out for.
+enum class Watch { object, surroundings, everything };  // object; and obstacles; and the hand's other links
+
+/// Least distance of the links' sampled points to what they watch for, obstacles and other links less their margins.
+class Probe {
+ public:
+  explicit Probe(const ClosingScene& scene) : scene_(scene) {}
+
+  Clearance operator()(const HandPose& pose, const std::vector<int>& links, Watch watch) {
+    scene_.hand.link_poses(pose.q, X_HL_);
+    near_.clear();
+    Clearance least{kFar, -1};
+    for (const int link : links) {
+      look_at_object(pose.X_OH, static_cast<std::size_t>(link), least);
+      if (watch != Watch::object) look_at_obstacles(pose.X_OH, static_cast<std::size_t>(link), least);
+      if (watch == Watch::everything) look_at_hand(static_cast<std::size_t>(link), least);
+    }
+    // Most promising first: once a point's rough distance exceeds the best by the grid's error, the rest cannot win.
+    std::sort(near_.begin(), near_.end(), [](const Near& a, const Near& b) { return a.rough < b.rough; });
+    for (const Near& point : near_) {
+      if (point.rough > least.value + scene_.target.grid->spacing()) break;
+      const double exact = scene_.target.distance->signed_distance(point.p_O);
+      if (exact < least.value) least = {exact, point.link};
+    }
+    return least;
+  }
+
+  const std::vector<Eigen::Isometry3d>& link_poses() const { return X_HL_; }
+
+ private:
+  struct Near {
+    double rough;
+    int link;
+    Eigen::Vector3d p_O;
+  };
+
+  void look_at_object(const Eigen::Isometry3d& X_OH, std::size_t link, Clearance& least) {
+    const DistanceGrid& grid = *scene_.target.grid;
+    const Eigen::Isometry3d X_OL = X_OH * X_HL_[link];
+    const double bound = grid.value(X_OL * scene_.surface.link_center[link]) - scene_.surface.link_radius[link];
+    if (bound - grid.spacing() > least.value) return;
+    for (const Eigen::Vector3d& p_L : scene_.surface.medium[link]) {
+      const Eigen::Vector3d p_O = X_OL * p_L;
+      const double rough = grid.value(p_O);
+      if (rough < kExactWithin) {
+        near_.push_back({rough, static_cast<int>(link), p_O});
+      } else if (rough < least.value) {
+        least = {rough, static_cast<int>(link)};
+      }
+    }
+  }
+
+  void look_at_obstacles(const Eigen::Isometry3d& X_OH, std::size_t link, Clearance& least) {
+    const Eigen::Isometry3d X_OL = X_OH * X_HL_[link];
+    const double radius = scene_.surface.link_radius[link];
+    const Eigen::Vector3d center = X_OL * scene_.surface.link_center[link];
+    if (scene_.target.obstacle_distance(center, kFar).value - radius - kObstacleMargin > least.value) return;
+    for (const Eigen::Vector3d& p_L : scene_.surface.medium[link]) {
+      const double free = scene_.target.obstacle_distance(X_OL * p_L, kFar).value - kObstacleMargin;
+      if (free < least.value) least = {free, -1};
+    }
+  }
+
+  void look_at_hand(std::size_t link, Clearance& least) {
+    for (const int stranger : scene_.surface.strangers[link]) {
+      const auto other = static_cast<std::size_t>(stranger);
+      const Eigen::Isometry3d X_BA = X_HL_[other].inverse() * X_HL_[link];
+      const double apart = (X_BA * scene_.surface.link_center[link] - scene_.surface.link_center[other]).norm();
+      const double bound = apart - scene_.surface.link_radius[link] - scene_.surface.link_radius[other];
+      if (bound - kSelfMargin > least.value) continue;
+      for (const Eigen::Vector3d& p_A : scene_.surface.medium[link]) {
+        const double free = scene_.surface.links[other].query(X_BA * p_A, kFar).value - kSelfMargin;
+        if (free < least.value) least = {free, -1};
+      }
+    }
+  }
+
+  const ClosingScene& scene_;
+  std::vector<Eigen::Isometry3d> X_HL_;
+  std::vector<Near> near_;
+};
+
+/// A one-parameter motion s -> pose with a bound of how fast its points move, m per unit of s.
+struct Motion {
+  std::function<HandPose(double)> pose;
+  double speed;
+  double end;
+};
+
+struct Stop {
+  double s;
+  Clearance clearance;
+  bool touched;
+};
+
+/// Follows a motion from a clear pose until the links are kTouch or less from the object, by steps no longer than the
+/// clearance allows; an overshoot (speed is an estimate) is taken back by bisection.
+Stop advance(const Motion& motion, const std::vector<int>& links, Watch watch, Probe& probe) {
+  double clear = 0.0;
+  Clearance at_clear = probe(motion.pose(0.0), links, watch);
+  double blocked = -1.0;
+  for (int step = 0; step < kMaxSteps; ++step) {
+    if (at_clear.value <= kTouch) return {clear, at_clear, true};
+    if (clear >= motion.end) return {motion.end, at_clear, false};
+    double s = std::min(motion.end, clear + std::max(0.8 * at_clear.value, 0.5 * kTouch) / motion.speed);
+    if (blocked >= 0.0 && s >= blocked) s = 0.5 * (clear + blocked);
+    const Clearance here = probe(motion.pose(s), links, watch);
+    if (here.value < 0.0) {
+      blocked = s;
+    } else {
+      clear = s;
+      at_clear = here;
+    }
+  }
+  return {clear, at_clear, false};
+}
+
+/// Opens a finger until it is clear; the amount, or nullopt.
+std::optional<HandPose> open_finger(const ClosingScene& scene, const Finger& finger, const HandPose& start,
+                                    Probe& probe) {
+  HandPose pose = start;
+  for (double s = 0.0; s <= kMaxOpening; s += 0.06) {
+    pose.q = start.q;
+    for (const int j : finger.joints) pose.q[j] -= s * scene.direction[j];
+    pose.q = scene.hand.clip(pose.q);
+    if (probe(pose, finger.links, Watch::object).value > kTouch) return pose;
+  }
+  return std::nullopt;
+}
+
+/// Draws the hand back along its approach direction until the palm is out of the object.
+bool retreat(const ClosingScene& scene, HandPose& pose, Probe& probe) {
+  const Eigen::Vector3d back = -(pose.X_OH.linear() * scene.surface.approach);
+  double moved = 0.0;
+  while (true) {
+    const double clearance = probe(pose, scene.surface.palm_links, Watch::object).value;
+    if (clearance >= 0.0) return true;
+    const double step = kTouch - clearance;
+    moved += step;
+    if (moved > kMaxRetreat) return false;
+    pose.X_OH.translation() += step * back;
+  }
+}
+
+double largest(const Eigen::VectorXd& direction, const std::vector<int>& joints) {
+  double value = 0.0;
+  for (const int j : joints) value = std::max(value, std::abs(direction[j]));
+  return value;
+}
+
+/// Bound of the speed of a finger's points when its joints move along direction: each joint times its reach.
+double finger_speed(const ClosingScene& scene, const Finger& finger, const Eigen::VectorXd& direction,
+                    const std::vector<Eigen::Isometry3d>& X_HL) {
+  double speed = 1e-6;
+  for (const int mover : finger.links) {
+    const LinkDrive& drive = scene.surface.drives[static_cast<std::size_t>(mover)];
+    if (drive.index < 0) continue;
+    double reach = 0.0;
+    for (const int link : finger.links) {
+      if (!scene.surface.moves[static_cast<std::size_t>(link)][static_cast<std::size_t>(drive.index)]) continue;
+      const auto i = static_cast<std::size_t>(link);
+      const Eigen::Vector3d apart =
+          X_HL[i] * scene.surface.link_center[i] - X_HL[static_cast<std::size_t>(mover)].translation();
+      reach = std::max(reach, apart.norm() + scene.surface.link_radius[i]);
+    }
+    speed += std::abs(drive.multiplier * direction[drive.index]) * reach;
+  }
+  return speed;
+}
+
+/// The synergy combination that brings the finger's contact points nearer to the object, as joint motion of that
+/// finger.
+Eigen::VectorXd approaching_direction(const ClosingScene& scene, const Finger& finger, const HandPose& pose) {
+  const auto X_HL = scene.hand.link_poses(pose.q);
+  Eigen::VectorXd slope = Eigen::VectorXd::Zero(pose.q.size());
+  for (const robot::SurfacePoint& point : scene.hand.description().contact_points) {
+    if (std::find(finger.links.begin(), finger.links.end(), point.link) == finger.links.end()) continue;
+    const Eigen::Vector3d p_H = X_HL[static_cast<std::size_t>(point.link)] * point.p_L;
+    const Eigen::Vector3d gradient =
+        pose.X_OH.linear().transpose() * scene.target.grid->query(pose.X_OH * p_H).gradient;
+    slope += scene.hand.point_jacobian(X_HL, point.link, p_H).transpose() * gradient;
+  }
+  const Eigen::VectorXd dy = -(scene.box.axes.transpose() * scene.box.scale.cwiseProduct(slope));
+  const Eigen::VectorXd along = scene.box.scale.cwiseProduct(scene.box.axes * dy);
+  const double length = largest(along, finger.joints);
+  return length > 1e-9 ? Eigen::VectorXd(along / length) : Eigen::VectorXd::Zero(pose.q.size());
+}
+
+/// Moves the finger along direction until it touches, then the joints beyond each touching link. False (and the pose as
+/// it was) when it meets nothing.
+bool close_finger(const ClosingScene& scene, const Finger& finger, const Eigen::VectorXd& direction, HandPose& pose,
+                  Probe& probe) {
+  Eigen::VectorXd moving = Eigen::VectorXd::Zero(pose.q.size());
+  for (const int j : finger.joints) moving[j] = direction[j];
+  const HandPose before = pose;
+  std::vector<int> links = finger.links;
+  bool met = false;
+  while (largest(moving, finger.joints) > 0.02 && !links.empty()) {
+    const HandPose start = pose;
+    const auto at = [&](double s) { return HandPose{start.X_OH, scene.hand.clip(start.q + s * moving)}; };
+    probe(start, {}, Watch::object);
+    const Motion motion{at, finger_speed(scene, finger, moving, probe.link_poses()),
+                        kMaxTravel / largest(moving, finger.joints)};
+    const Stop stop = advance(motion, links, Watch::everything, probe);
+    const bool touched = stop.touched && stop.clearance.link >= 0;
+    if (!touched && !met) break;
+    if (!touched) break;  // the rest of a finger that already touches stays as it is
+    pose = at(stop.s);
+    met = true;
+    const auto& stopped = scene.surface.moves[static_cast<std::size_t>(stop.clearance.link)];
+    for (const int j : finger.joints) moving[j] = stopped[static_cast<std::size_t>(j)] ? 0.0 : moving[j];
+    std::erase_if(links, [&](int link) {
+      const auto& moves = scene.surface.moves[static_cast<std::size_t>(link)];
+      return std::none_of(finger.joints.begin(), finger.joints.end(),
+                          [&](int j) { return moves[static_cast<std::size_t>(j)] && moving[j] != 0.0; });
+    });
+  }
+  if (!met) pose = before;
+  return met;
+}
+
+}  // namespace
+
+Eigen::VectorXd closing_direction(const SynergyBox& group, const SynergyBox& pre_grasp) {
+  const Eigen::VectorXd difference =
+      (group.scale.cwiseProduct(group.center) - pre_grasp.scale.cwiseProduct(pre_grasp.center))
+          .cwiseQuotient(group.scale);
+  Eigen::VectorXd along = group.axes * (group.axes.transpose() * difference);
+  if (along.norm() < 0.1 * difference.norm()) along = difference;
+  along = group.scale.cwiseProduct(along);
+  const double length = along.cwiseAbs().maxCoeff();
+  return length > 1e-6 ? Eigen::VectorXd(along / length) : Eigen::VectorXd::Zero(along.size());
+}
+
+std::optional<HandPose> close_hand(const ClosingScene& scene, const HandPose& start) {
+  Probe probe(scene);
+  HandPose pose{start.X_OH, scene.hand.clip(start.q)};
+  if (!retreat(scene, pose, probe)) return std::nullopt;
+  for (const Finger& finger : scene.surface.fingers) {
+    const auto opened = open_finger(scene, finger, pose, probe);
+    if (!opened) return std::nullopt;
+    pose = *opened;
+  }
+  std::vector<int> all(scene.hand.links().size());
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
+  const Eigen::Vector3d forward = pose.X_OH.linear() * scene.surface.approach;
+  const auto shifted = [&](double s) {
+    HandPose moved = pose;
+    moved.X_OH.translation() += s * forward;
+    return moved;
+  };
+  const Stop stop = advance({shifted, 1.0, kMaxAdvance}, all, Watch::surroundings, probe);
+  if (stop.touched && stop.clearance.link >= 0) pose = shifted(stop.s);
+  for (const Finger& finger : scene.surface.fingers) {
+    if (close_finger(scene, finger, scene.direction, pose, probe)) continue;
+    close_finger(scene, finger, approaching_direction(scene, finger, pose), pose, probe);
+  }
+  return pose;
+}
+
+std::vector<Contact> find_contacts(const ClosingScene& scene, const HandPose& pose, double tolerance, double mu) {
+  const auto X_HL = scene.hand.link_poses(pose.q);
+  std::vector<Contact> contacts;
+  std::vector<bool> touches(X_HL.size(), false);
+  const auto add = [&](std::size_t link, const robot::MeshDistance::Query& at) {
+    contacts.push_back({scene.hand.links()[link].name, at.point, -at.gradient.normalized(), mu});
+    touches[link] = true;
+  };
+  for (const robot::SurfacePoint& point : scene.hand.description().contact_points) {
+    const auto link = static_cast<std::size_t>(point.link);
+    const Eigen::Vector3d p_O = pose.X_OH * X_HL[link] * point.p_L;
+    if (scene.target.grid->value(p_O) > tolerance + scene.target.grid->spacing()) continue;
+    const auto at = scene.target.distance->query(p_O);
+    if (std::abs(at.distance) <= tolerance) add(link, at);
+  }
+  for (std::size_t link = 0; link < X_HL.size(); ++link) {
+    if (touches[link]) continue;
+    robot::MeshDistance::Query nearest{};
+    nearest.distance = std::numeric_limits<double>::infinity();
+    const Eigen::Isometry3d X_OL = pose.X_OH * X_HL[link];
+    for (const Eigen::Vector3d& p_L : scene.surface.medium[link]) {
+      const Eigen::Vector3d p_O = X_OL * p_L;
+      if (scene.target.grid->value(p_O) > tolerance + scene.target.grid->spacing()) continue;
+      const auto at = scene.target.distance->query(p_O);
+      if (at.distance < nearest.distance) nearest = at;
+    }
+    if (std::abs(nearest.distance) <= tolerance) add(link, nearest);
+  }
+  return contacts;
+}
+
+}  // namespace opponens::grasp

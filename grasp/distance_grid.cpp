@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grasp/distance_grid.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <thread>
+
+#include "core/require.hpp"
+
+namespace opponens::grasp {
+
+DistanceGrid::DistanceGrid(const robot::MeshDistance& mesh, double spacing, double margin, std::size_t max_nodes,
+                           int threads)
+    : spacing_(spacing) {
+  require(spacing > 0.0 && margin > 0.0 && threads > 0, "DistanceGrid: spacing, margin and threads must be positive");
+  const Eigen::Matrix3Xd& vertices = mesh.mesh().vertices;
+  lower_ = vertices.rowwise().minCoeff().array() - margin;
+  const Eigen::Vector3d extent = (vertices.rowwise().maxCoeff().array() + margin).matrix() - lower_;
+  const auto nodes = [&] { return (extent / spacing_).array().ceil().cast<double>() + 1.0; };
+  while (nodes().prod() > static_cast<double>(max_nodes)) spacing_ *= 1.1;
+  count_ = nodes().cast<int>().max(2);
+  upper_ = lower_ + spacing_ * (count_.array() - 1).cast<double>().matrix();
+  nodes_.resize(static_cast<std::size_t>(count_.cast<std::int64_t>().prod()));
+  const auto fill = [&](int first) {
+    for (int z = first; z < count_.z(); z += threads) {
+      std::size_t index = static_cast<std::size_t>(z) * count_.y() * count_.x();
+      for (int y = 0; y < count_.y(); ++y) {
+        for (int x = 0; x < count_.x(); ++x) {
+          nodes_[index++] = static_cast<float>(mesh.signed_distance(lower_ + spacing_ * Eigen::Vector3d(x, y, z)));
+        }
+      }
+    }
+  };
+  std::vector<std::jthread> workers;
+  for (int t = 1; t < threads; ++t) workers.emplace_back(fill, t);
+  fill(0);
+}
+
+DistanceGrid::Cell DistanceGrid::locate(const Eigen::Vector3d& p) const {
+  Cell cell{nullptr, {}, p.cwiseMax(lower_).cwiseMin(upper_)};
+  const Eigen::Vector3d scaled = (cell.inside - lower_) * (1.0 / spacing_);
+  std::array<int, 3> corner;
+  for (int i = 0; i < 3; ++i) {
+    corner[i] = std::min(static_cast<int>(scaled[i]), count_[i] - 2);  // not negative: truncation is the floor
+    cell.fraction[i] = scaled[i] - corner[i];
+  }
+  cell.node = nodes_.data() + (static_cast<std::size_t>(corner[2]) * count_.y() + corner[1]) * count_.x() + corner[0];
+  return cell;
+}
+
+double DistanceGrid::value(const Eigen::Vector3d& p) const {
+  const Cell cell = locate(p);
+  const Eigen::Vector3d& f = cell.fraction;
+  const std::size_t row = count_.x();
+  const std::size_t layer = row * count_.y();
+  const auto edge = [&](std::size_t i) { return cell.node[i] + f.x() * (cell.node[i + 1] - cell.node[i]); };
+  const double e00 = edge(0), e10 = edge(row), e01 = edge(layer), e11 = edge(layer + row);
+  const double low = e00 + f.y() * (e10 - e00);
+  const double high = e01 + f.y() * (e11 - e01);
+  const double outside = (p - cell.inside).squaredNorm();
+  return low + f.z() * (high - low) + (outside > 0.0 ? std::sqrt(outside) : 0.0);
+}
+
+SignedDistance DistanceGrid::query(const Eigen::Vector3d& p) const {
+  const Cell cell = locate(p);
+  const Eigen::Vector3d& f = cell.fraction;
+  const float* n = cell.node;
+  const std::size_t row = count_.x();
+  const std::size_t layer = row * count_.y();
+  // Along x on the four edges, then y, then z.
+  const auto edge = [&](std::size_t offset) { return n[offset] + f.x() * (n[offset + 1] - n[offset]); };
+  const auto slope = [&](std::size_t offset) { return static_cast<double>(n[offset + 1] - n[offset]); };
+  const double e00 = edge(0), e10 = edge(row), e01 = edge(layer), e11 = edge(layer + row);
+  const double low = e00 + f.y() * (e10 - e00);
+  const double high = e01 + f.y() * (e11 - e01);
+  const double s0 = slope(0) + f.y() * (slope(row) - slope(0));
+  const double s1 = slope(layer) + f.y() * (slope(layer + row) - slope(layer));
+  SignedDistance result{
+      low + f.z() * (high - low),
+      Eigen::Vector3d(s0 + f.z() * (s1 - s0), (1.0 - f.z()) * (e10 - e00) + f.z() * (e11 - e01), high - low) /
+          spacing_};
+  const Eigen::Vector3d beyond = p - cell.inside;
+  const double outside = beyond.norm();
+  if (outside > 0.0) {
+    for (int i = 0; i < 3; ++i) result.gradient[i] = beyond[i] == 0.0 ? result.gradient[i] : 0.0;
+    result.value += outside;
+    result.gradient += beyond / outside;
+  }
+  return result;
+}
+
+}  // namespace opponens::grasp

@@ -1,0 +1,153 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grasp/grasp_check.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <utility>
+
+#include "analysis/synergy_box.hpp"
+
+namespace opponens::grasp {
+namespace {
+
+constexpr double kObstacleClearance = 0.001;  // m, of a grasp from support and obstacles
+constexpr double kSelfClearance = 0.0005;     // m, between fingers: what a path keeps (design: "Verification")
+constexpr int kSweepSteps = 12;
+
+/// The straight motion from grasp to pre-grasp at s in [0, 1].
+HandPose between(const HandPose& grasp, const HandPose& pregrasp, double s) {
+  HandPose pose = grasp;
+  pose.X_OH.translation() += s * (pregrasp.X_OH.translation() - grasp.X_OH.translation());
+  pose.q += s * (pregrasp.q - grasp.q);
+  return pose;
+}
+
+bool sweep_is_clear(const ClosingScene& scene, const HandCheckers& checkers, const HandPose& grasp,
+                    const HandPose& pregrasp, double max_penetration) {
+  for (int i = 1; i < kSweepSteps; ++i) {
+    const HandPose pose = between(grasp, pregrasp, static_cast<double>(i) / kSweepSteps);
+    if (hand_object_distance(scene, pose, Density::medium, 0.001) < -max_penetration) return false;
+    if (obstacle_distance(scene, pose, kObstacleClearance) < kObstacleClearance) return false;
+  }
+  for (int i = 2; i < kSweepSteps; i += 3) {
+    const HandPose pose = between(grasp, pregrasp, static_cast<double>(i) / kSweepSteps);
+    if (!checkers.touching.free(scene.target.X_WO * pose.X_OH, pose.q)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+double hand_object_distance(const ClosingScene& scene, const HandPose& pose, Density density, double exact_below) {
+  const auto X_HL = scene.hand.link_poses(pose.q);
+  const HandSurface& surface = scene.surface;
+  const DistanceGrid& grid = *scene.target.grid;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t link = 0; link < X_HL.size(); ++link) {
+    const Eigen::Isometry3d X_OL = pose.X_OH * X_HL[link];
+    const double bound = grid.value(X_OL * surface.link_center[link]) - surface.link_radius[link];
+    if (bound - grid.spacing() > least) continue;
+    for (const Eigen::Vector3d& p_L : (density == Density::dense ? surface.dense : surface.medium)[link]) {
+      const Eigen::Vector3d p_O = X_OL * p_L;
+      double d = grid.value(p_O);
+      // Only a point that could still be the nearest is worth an exact answer.
+      if (d < exact_below + grid.spacing() && d < least + grid.spacing()) {
+        d = scene.target.distance->signed_distance(p_O);
+      }
+      least = std::min(least, d);
+    }
+  }
+  return least;
+}
+
+double object_hand_distance(const ClosingScene& scene, const HandPose& pose, double horizon) {
+  const auto X_HL = scene.hand.link_poses(pose.q);
+  const HandSurface& surface = scene.surface;
+  double least = horizon;
+  for (std::size_t link = 0; link < X_HL.size(); ++link) {
+    if (surface.links[link].empty()) continue;
+    const Eigen::Isometry3d X_LO = (pose.X_OH * X_HL[link]).inverse();
+    const double reach = surface.link_radius[link] + horizon;
+    if (scene.target.grid->value(X_LO.inverse() * surface.link_center[link]) > reach + 0.01) continue;
+    for (const Eigen::Vector3d& p_O : scene.target.surface) {
+      const Eigen::Vector3d p_L = X_LO * p_O;
+      if ((p_L - surface.link_center[link]).squaredNorm() > reach * reach) continue;
+      least = std::min(least, surface.links[link].query(p_L, horizon).value);
+    }
+  }
+  return least;
+}
+
+double self_distance(const ClosingScene& scene, const HandPose& pose, double horizon) {
+  const auto X_HL = scene.hand.link_poses(pose.q);
+  const HandSurface& surface = scene.surface;
+  double least = horizon;
+  for (std::size_t a = 0; a < X_HL.size(); ++a) {
+    for (const int stranger : surface.strangers[a]) {
+      const auto b = static_cast<std::size_t>(stranger);
+      const Eigen::Isometry3d X_BA = X_HL[b].inverse() * X_HL[a];
+      const double apart = (X_BA * surface.link_center[a] - surface.link_center[b]).norm();
+      if (apart > surface.link_radius[a] + surface.link_radius[b] + horizon) continue;
+      for (const Eigen::Vector3d& p_A : surface.medium[a]) {
+        least = std::min(least, surface.links[b].query(X_BA * p_A, horizon).value);
+      }
+    }
+  }
+  return least;
+}
+
+double obstacle_distance(const ClosingScene& scene, const HandPose& pose, double horizon) {
+  const auto X_HL = scene.hand.link_poses(pose.q);
+  double least = horizon;
+  for (std::size_t link = 0; link < X_HL.size(); ++link) {
+    const Eigen::Isometry3d X_OL = pose.X_OH * X_HL[link];
+    const double reach = scene.surface.link_radius[link] + horizon;
+    if (scene.target.obstacle_distance(X_OL * scene.surface.link_center[link], reach).value > reach) continue;
+    for (const Eigen::Vector3d& p_L : scene.surface.medium[link]) {
+      least = std::min(least, scene.target.obstacle_distance(X_OL * p_L, horizon).value);
+    }
+  }
+  return least;
+}
+
+HandCheckers hand_checkers(const robot::RobotModel& hand, const robot::Scene& scene, const std::string& object) {
+  std::vector<robot::BodyPair> contacts;
+  for (const robot::Link& link : hand.links()) contacts.emplace_back(link.name, object);
+  return {robot::CollisionChecker(hand, scene), robot::CollisionChecker(hand, scene, std::move(contacts))};
+}
+
+std::string posture_fault(const ClosingScene& scene, const HandCheckers& checkers, const HandPose& pose,
+                          double max_penetration) {
+  if (obstacle_distance(scene, pose, kObstacleClearance) < kObstacleClearance) return "too near to an obstacle";
+  if (!checkers.touching.free(scene.target.X_WO * pose.X_OH, pose.q)) return "hand in collision";
+  if (self_distance(scene, pose, kSelfClearance) < kSelfClearance) return "fingers touch each other";
+  if (hand_object_distance(scene, pose, Density::dense, 0.001) < -max_penetration) return "penetrates the object";
+  if (object_hand_distance(scene, pose, 0.001) < -max_penetration) return "penetrates the object";
+  return {};
+}
+
+std::optional<HandPose> find_pregrasp(const ClosingScene& scene, const HandCheckers& checkers,
+                                      const SynergyBox& pre_grasp, const HandPose& grasp, double clearance,
+                                      double max_penetration) {
+  const Eigen::VectorXd opened = scene.hand.clip(analysis::project(pre_grasp, grasp.q));
+  const Eigen::VectorXd against = scene.hand.clip(analysis::project(pre_grasp, grasp.q - 0.5 * scene.direction));
+  const Eigen::VectorXd center = scene.hand.clip(pre_grasp.scale.cwiseProduct(pre_grasp.center));
+  const Eigen::Vector3d back = -(grasp.X_OH.linear() * scene.surface.approach);
+  for (const double distance : {0.02, 0.03, 0.05, 0.07, 0.1, 0.14}) {
+    for (const Eigen::VectorXd* q : {&opened, &against, &center}) {
+      HandPose pose{grasp.X_OH, *q};
+      pose.X_OH.translation() += distance * back;
+      if (hand_object_distance(scene, pose, Density::medium, clearance) < clearance) continue;
+      if (hand_object_distance(scene, pose, Density::dense, clearance) < clearance) continue;
+      if (self_distance(scene, pose, kSelfClearance) < kSelfClearance) continue;
+      if (obstacle_distance(scene, pose, kObstacleClearance) < kObstacleClearance) continue;
+      if (!checkers.apart.free(scene.target.X_WO * pose.X_OH, pose.q)) continue;
+      if (sweep_is_clear(scene, checkers, grasp, pose, max_penetration)) return pose;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace opponens::grasp

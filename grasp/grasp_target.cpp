@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grasp/grasp_target.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/require.hpp"
+#include "robot/mesh.hpp"
+
+namespace opponens::grasp {
+namespace {
+
+constexpr double kGridSpacing = 0.003;  // m
+constexpr double kGridMargin = 0.03;    // m
+constexpr std::size_t kGridNodes = 150000;
+constexpr double kSurfaceSpacing = 0.0025;  // m
+constexpr double kSurfacePoints = 40000.0;
+
+}  // namespace
+
+SignedDistance GraspTarget::obstacle_distance(const Eigen::Vector3d& p_O, double horizon) const {
+  SignedDistance nearest{std::numeric_limits<double>::infinity(), Eigen::Vector3d::UnitZ()};
+  for (const Obstacle& obstacle : obstacles) {
+    const SignedDistance d = obstacle.distance.query(obstacle.X_BO * p_O, horizon);
+    if (d.value < nearest.value) nearest = {d.value, obstacle.X_BO.linear().transpose() * d.gradient};
+  }
+  return nearest;
+}
+
+GraspTarget make_target(const robot::Scene& scene, const std::string& object, int threads) {
+  const robot::SceneBody& body = scene.body(object);
+  require(!body.geometry.empty(), "grasp search: object " + object + " has no geometry");
+  GraspTarget target;
+  target.name = object;
+  target.X_WO = body.X_WB;
+  target.mesh = std::make_shared<const robot::TriangleMesh>(robot::merge(body.geometry));
+  target.distance = std::make_shared<const robot::MeshDistance>(target.mesh);
+  target.grid = std::make_shared<const DistanceGrid>(*target.distance, kGridSpacing, kGridMargin, kGridNodes, threads);
+  const Eigen::Matrix3Xd& vertices = target.mesh->vertices;
+  const auto count = target.mesh->triangles.cols();
+  target.cumulative_area.resize(count);
+  double area = 0.0;
+  for (Eigen::Index f = 0; f < count; ++f) {
+    const Eigen::Vector3i t = target.mesh->triangles.col(f);
+    area += 0.5 * (vertices.col(t[1]) - vertices.col(t[0])).cross(vertices.col(t[2]) - vertices.col(t[0])).norm();
+    target.cumulative_area[f] = area;
+  }
+  require(area > 0.0, "grasp search: object " + object + " has no surface");
+  const double spacing = std::max(kSurfaceSpacing, std::sqrt(area / kSurfacePoints));
+  target.surface = robot::surface_samples({target.mesh, Eigen::Isometry3d::Identity()}, spacing);
+  target.center_of_mass = robot::is_closed(*target.mesh) ? robot::mass_properties(*target.mesh).center_of_mass
+                                                         : Eigen::Vector3d(vertices.rowwise().mean());
+  target.rho = (vertices.colwise() - target.center_of_mass).colwise().norm().maxCoeff();
+  for (const robot::SceneBody& other : scene.bodies) {
+    if (other.name == object || other.geometry.empty()) continue;
+    target.obstacles.push_back({other.name, BodyDistance(other.geometry), other.X_WB.inverse() * target.X_WO});
+  }
+  return target;
+}
+
+SurfaceSeed sample_surface(const GraspTarget& target, Rng& rng) {
+  const Eigen::VectorXd& areas = target.cumulative_area;
+  const double pick = rng.uniform() * areas[areas.size() - 1];
+  const auto f =
+      std::min<Eigen::Index>(std::upper_bound(areas.begin(), areas.end(), pick) - areas.begin(), areas.size() - 1);
+  const Eigen::Vector3i t = target.mesh->triangles.col(f);
+  const Eigen::Vector3d a = target.mesh->vertices.col(t[0]);
+  const Eigen::Vector3d u = target.mesh->vertices.col(t[1]) - a;
+  const Eigen::Vector3d v = target.mesh->vertices.col(t[2]) - a;
+  const double root = std::sqrt(rng.uniform());
+  const double share = rng.uniform();
+  const double b = root * (1.0 - share);
+  const double c = root * share;
+  return {a + b * u + c * v, u.cross(v).normalized()};
+}
+
+}  // namespace opponens::grasp

@@ -1,0 +1,18 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "grasp/wrench_space.hpp"
+
+namespace opponens::grasp {
+
+struct MinNormPoint {
+  Vector6d point;    ///< of the set, nearest to the origin
+  Matrix6Xd corral;  ///< [6 x c], c <= 7: affinely independent points of the set whose hull holds it
+};
+
+/// Wolfe's algorithm (1976, doi:10.1007/BF01580381) with the support function as its oracle: finite, and the gap
+/// |x| - min_w x'w/|x| bounds the error of the distance, so it stops at gap <= 1e-13 scale. Tens of iterations.
+MinNormPoint min_norm_point(const WrenchSpace& space);
+
+}  // namespace opponens::grasp

@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "motion/closing_segment.hpp"
+
+#include <cstdint>
+#include <string>
+
+#include "core/require.hpp"
+#include "motion/edge_check.hpp"
+
+namespace opponens::motion {
+
+World closing_world(const robot::CollisionChecker& closing, const robot::RobotModel& robot, double resolution,
+                    const ContactLimit& contact) {
+  return make_world(
+      [&closing, &robot, contact](const Eigen::VectorXd& q) {
+        return robot.within_limits(q) && closing.free(q) &&
+               (contact.depth == nullptr || (*contact.depth)(q) <= contact.max_depth);
+      },
+      robot.weights(), resolution);
+}
+
+ClosingSegment closing_segment(const Eigen::VectorXd& q_pregrasp, const Eigen::VectorXd& q_grasp,
+                               const PlanningGroup& hand, const World& closing) {
+  require(q_pregrasp.size() == q_grasp.size() && hand.first + hand.count <= q_grasp.size(),
+          "closing_segment: pre-grasp and grasp must be whole configurations of one robot");
+  Eigen::VectorXd between = q_grasp;
+  between.segment(hand.first, hand.count) = q_pregrasp.segment(hand.first, hand.count);
+  Eigen::MatrixXd together(2, q_grasp.size());
+  together << q_pregrasp.transpose(), q_grasp.transpose();
+  Eigen::MatrixXd arm_first(3, q_grasp.size());
+  arm_first << q_pregrasp.transpose(), between.transpose(), q_grasp.transpose();
+
+  ClosingSegment result;
+  std::int64_t checks = 0;
+  const auto valid = [&](const Eigen::MatrixXd& waypoints) {
+    for (const MotionCheck* check : {&closing.first_invalid, &closing.confirm}) {
+      if (!*check) continue;
+      for (Eigen::Index i = 1; i < waypoints.rows(); ++i) {
+        const Eigen::VectorXd q_from = waypoints.row(i - 1).transpose();
+        const Eigen::VectorXd q_to = waypoints.row(i).transpose();
+        if (const auto fraction = (*check)(q_from, q_to, checks)) {
+          result.invalid = q_from + *fraction * (q_to - q_from);
+          return false;
+        }
+      }
+    }
+    return true;
+  };
+  const bool distinct = between != q_pregrasp && between != q_grasp;
+  for (const Eigen::MatrixXd& waypoints : {together, arm_first}) {
+    if (waypoints.rows() == 3 && !distinct) break;  // only the arm or only the hand moves
+    if (valid(waypoints)) return {waypoints, std::nullopt};
+  }
+  return result;
+}
+
+Result<JointPath> append_closing_segment(const JointPath& path, const Eigen::VectorXd& q_grasp,
+                                         const PlanningGroup& hand, const World& closing) {
+  require(path.waypoints.rows() > 0, "append_closing_segment: the path is empty");
+  const Eigen::Index rows = path.waypoints.rows();
+  const Eigen::VectorXd q_pregrasp = path.waypoints.row(rows - 1).transpose();
+  const ClosingSegment segment = closing_segment(q_pregrasp, q_grasp, hand, closing);
+  if (segment.waypoints.rows() == 0) {
+    return failure(FailureCode::invalid_input, "no valid closing segment from the path's end to the grasp");
+  }
+  JointPath longer{path.joint_names, Eigen::MatrixXd(rows + segment.waypoints.rows() - 1, q_grasp.size())};
+  longer.waypoints << path.waypoints, segment.waypoints.bottomRows(segment.waypoints.rows() - 1);
+  return longer;
+}
+
+}  // namespace opponens::motion

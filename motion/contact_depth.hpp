@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "robot/mesh_distance.hpp"
+#include "robot/robot_model.hpp"
+#include "robot/scene.hpp"
+
+namespace opponens::motion {
+
+/// How deep some links stick in the object: what bounds the contacts of a closing segment, whose link-object pairs the
+/// collision checker leaves out. Measured at points on the links' surfaces, so a depth may be missed by at most about
+/// spacing^2 / (8 r) where the object's radius of curvature is r, and by spacing at its edges. Immutable, thread-safe.
+class ContactDepth {
+ public:
+  /// links: names of the links that may touch; object: a body of the scene; spacing of the surface points, m.
+  /// robot is referred to and must outlive this.
+  ContactDepth(const robot::RobotModel& robot, const robot::Scene& scene, const std::string& object,
+               const std::vector<std::string>& links, double spacing = 0.003);
+
+  /// m, >= 0. q: [d] rad. Cost: one tree query per surface point whose link is near the object.
+  double operator()(const Eigen::VectorXd& q) const;
+
+ private:
+  struct LinkSurface {
+    int link;
+    Eigen::Matrix3Xd points;  ///< m, in the link
+    Eigen::Vector3d center;   ///< m, of a sphere around the points, in the link
+    double radius;            ///< m
+  };
+  struct Solid {
+    robot::MeshDistance distance;
+    Eigen::Isometry3d X_GR;  ///< robot root in the geometry's frame
+  };
+  const robot::RobotModel* robot_;
+  std::vector<LinkSurface> links_;
+  std::vector<Solid> solids_;
+};
+
+/// The largest depth that a closing segment may have. Without a measure it is not bounded.
+struct ContactLimit {
+  const ContactDepth* depth = nullptr;
+  double max_depth = 0.001;  ///< m
+};
+
+}  // namespace opponens::motion

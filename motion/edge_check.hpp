@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "motion/world.hpp"
+#include "robot/collision.hpp"
+#include "robot/robot_model.hpp"
+
+namespace opponens::motion {
+
+/// Whether a configuration [d] rad is valid. Same argument, same answer; thread-safe if the world is to be.
+using Validity = std::function<bool(const Eigen::VectorXd& q)>;
+
+/// Checks the motion q_from (exclusive) to q_to (inclusive) at equal spacing <= resolution (rad, weighted metric):
+/// first q_to, then the inner configurations by bisection (1/2, 1/4, 3/4, 1/8, ...: van der Corput's sequence), so that
+/// an obstacle in the middle is met after few evaluations. Returns the fraction of the first invalid configuration in
+/// that order. Deterministic; adds the configurations evaluated to checks.
+std::optional<double> first_invalid(const Eigen::VectorXd& q_from, const Eigen::VectorXd& q_to, const Validity& valid,
+                                    const Eigen::VectorXd& weights, double resolution, std::int64_t& checks);
+
+/// A World that asks `valid` at the given spacing, and at confirm_resolution (default: a tenth of it) to confirm an
+/// answer; confirm_resolution = 0: no confirmation.
+World make_world(Validity valid, const Eigen::VectorXd& weights, double resolution, double confirm_resolution);
+World make_world(Validity valid, const Eigen::VectorXd& weights, double resolution);
+
+/// The robot's world: inside the joint limits, and free for the checker. Checker and robot are referred to and must
+/// outlive the world.
+World make_world(const robot::CollisionChecker& checker, const robot::RobotModel& robot, double resolution);
+
+}  // namespace opponens::motion

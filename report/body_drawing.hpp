@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "report/facets.hpp"
+#include "report/picture.hpp"
+#include "robot/robot_model.hpp"
+
+namespace opponens::report {
+
+/// Indices into body_paints(): robot grey, hand darker, a tint for each finger, object orange, obstacles light.
+enum BodyPaint { paint_arm, paint_palm, paint_finger, paint_object = paint_finger + 5, paint_obstacle, paint_support };
+
+std::vector<Paint> body_paints();
+
+/// The links' surfaces as they will be drawn, made once for many pictures.
+struct RobotFacets {
+  std::vector<std::vector<Facet>> links;  ///< by link index, in the link's frame
+};
+
+/// max_triangles: of all meshes of the robot together; finer ones are simplified.
+RobotFacets robot_facets(const robot::RobotModel& model, int max_triangles);
+
+/// Appends the robot at q [d] rad with its root at X_WR.
+void append_robot(std::vector<Facet>& out, const robot::RobotModel& model, const RobotFacets& facets,
+                  const Eigen::Isometry3d& X_WR, const Eigen::VectorXd& q);
+
+/// All corners of facets: what a view has to show.
+std::vector<Eigen::Vector3d> corners_of(const std::vector<Facet>& facets);
+
+/// A configuration of the model from values given by joint name: a name that the model lacks is ignored, a joint
+/// without a value keeps base's. Clipped to the joint limits. base: [d] rad.
+Eigen::VectorXd by_name(const robot::RobotModel& model, const std::vector<std::string>& names,
+                        const Eigen::VectorXd& values, const Eigen::VectorXd& base);
+
+/// Zero, clipped to the joint limits.
+Eigen::VectorXd rest_configuration(const robot::RobotModel& model);
+
+}  // namespace opponens::report

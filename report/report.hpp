@@ -1,0 +1,194 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "core/demonstration.hpp"
+#include "core/grasp.hpp"
+#include "core/path.hpp"
+#include "core/synergies.hpp"
+#include "robot/robot_model.hpp"
+#include "robot/scene.hpp"
+
+namespace opponens::report {
+
+// What a report shows, as plain values. Every part may be missing: its section then says so in a sentence. All text is
+// taken as hostile and escaped. Nothing here may differ between runs with equal inputs, except what is in RunPart.
+
+struct Interval {
+  double low = 0.0;
+  double high = 0.0;
+};
+
+/// Recordings of one group.
+struct RecordingGroup {
+  std::string name;
+  int recordings = 0;
+  int samples = 0;
+  double mean_duration = 0.0;  ///< s
+  Interval duration;           ///< s, shortest and longest
+};
+
+struct DemonstrationPart {
+  std::string grouped_by;                ///< label that forms the groups: "family", "object", ...
+  int simulated = 0;                     ///< recordings with origin simulated; > 0 puts the banner on the page
+  std::vector<RecordingGroup> groups;    ///< one row each
+  std::string source;                    ///< a sentence: where the recordings came from
+  std::string mapping;                   ///< how they came to the robot hand, e.g. "paper"; empty: not retargeted
+  std::optional<double> tip_residual;    ///< m, root mean square fingertip residual of the mapping
+  std::optional<Demonstration> example;  ///< drawn as joint traces
+};
+
+/// Both cost curves of one recording. S candidate splits.
+struct TransitionCurves {
+  std::string demonstration;            ///< id
+  Eigen::VectorXd time;                 ///< [S] s
+  Eigen::VectorXd log_likeness;         ///< [S] log L(Q-, Q+), Eq. (1)
+  Eigen::VectorXd changepoint_cost;     ///< [S] n1 log|S1 + rI| + n2 log|S2 + rI|; empty: not computed
+  std::optional<double> likeness_time;  ///< s, minimum found
+  std::optional<double> changepoint_time;
+  std::optional<double> known_time;  ///< s, ground truth of a simulated movement
+};
+
+/// Transition of one recording as a fraction of its duration, by each rule.
+struct TransitionFractions {
+  std::string demonstration;
+  std::optional<double> likeness;
+  std::optional<double> changepoint;
+  std::optional<double> known;
+};
+
+struct TransitionPart {
+  std::string method;  ///< the rule in force: "likeness" or "changepoint"
+  std::optional<TransitionCurves> example;
+  std::vector<TransitionFractions> all;  ///< one per recording
+};
+
+/// How much of the samples a box holds, beside what it promises (fractions).
+struct Coverage {
+  double nominal = 0.95;
+  double in_sample = 0.0;
+  std::optional<double> held_out;    ///< one cluster left out at a time
+  std::optional<Interval> interval;  ///< of held_out (of in_sample when there is no held_out)
+};
+
+struct SynergyItem {
+  SynergyGroup group;
+  int samples = 0;
+  Eigen::VectorXd cumulative_low;       ///< [n] fraction, interval of the cumulative variance; empty: none
+  Eigen::VectorXd cumulative_high;      ///< [n]
+  std::optional<Coverage> full_box;     ///< of the n-box
+  std::optional<Coverage> reduced_box;  ///< of the first k coordinates
+};
+
+struct SynergyPart {
+  std::vector<std::string> joint_names;  ///< [n]
+  std::string grouped_by;                ///< Table 1 is compared only when this is "family"
+  std::string box_root;                  ///< "n", "k" or "literal"
+  std::string cluster;                   ///< what is left out and resampled: "subject" or "recording"
+  double interval_level = 0.95;          ///< of all intervals
+  std::vector<SynergyItem> groups;       ///< pre-grasp first
+};
+
+struct GraspItem {
+  std::string id;
+  Grasp grasp;
+  std::optional<bool> verified;  ///< of `verify`, nullopt: not yet checked
+};
+
+struct GraspPart {
+  std::string object;                            ///< body of the scene
+  std::vector<GraspItem> items;                  ///< best first
+  std::int64_t trials = 0;                       ///< of the search
+  std::map<std::string, std::int64_t> rejected;  ///< reason -> count
+  int max_pictures = 12;                         ///< items beyond are only in the table
+};
+
+struct HumanLikeness {
+  std::optional<double> value;  ///< percent; nullopt: the hand does not move, or there is no reference
+  std::string reference;        ///< named beside every value, e.g. "free-finger recordings (simulated)"
+};
+
+/// One planning run: a row of Table 2 is the mean over the runs of a planner.
+struct PlanRun {
+  std::string planner;  ///< "synergy" or "rrtconnect"
+  std::uint64_t seed = 0;
+  PlanResult result;                          ///< path may be empty: it is not drawn from here
+  std::vector<HumanLikeness> human_likeness;  ///< the first is the one of Table 2
+};
+
+struct PathPart {
+  std::string id;
+  std::vector<PlanRun> runs;  ///< the first is the run whose path is shown
+  std::string goal_grasp;     ///< id of the grasp that is reached; empty: unknown
+  JointPath path;             ///< shortcut and closing segment included; rows from start to grasp
+  Eigen::VectorXd times;      ///< [N] s; empty: not timed
+  int pregrasp = -1;          ///< row of the pre-grasp, where the closing segment starts; -1: none
+  int pictures = 4;           ///< snapshots per view, start and end included
+};
+
+struct Verdict {
+  std::string id;
+  std::string kind;  ///< "grasp", "path", ...
+  bool passed = false;
+  std::string reason;  ///< of a failure
+};
+
+struct VerifyPart {
+  std::vector<std::string> checks;  ///< sentences: what was checked, and how finely
+  std::vector<Verdict> verdicts;
+  int checked = 0;                        ///< objects, those without a row included
+  std::optional<double> worst_clearance;  ///< m, over all paths
+  std::string worst_pair;                 ///< the two bodies there; may be empty
+};
+
+/// A stored object behind the path, as `why` prints it.
+struct ProvenanceItem {
+  std::string id;
+  std::string kind;
+  std::string name;
+  std::string command;
+  std::vector<std::string> inputs;           ///< ids
+  std::map<std::string, std::string> files;  ///< outside input file -> SHA-256
+  std::string parameters;                    ///< JSON text
+  std::uint64_t seed = 0;
+  std::string program_version;
+};
+
+/// What differs from run to run. Stands between the comments run-log begin and run-log end, and nowhere else.
+struct RunPart {
+  std::string log;                         ///< text, one line per run
+  std::optional<double> planning_seconds;  ///< mean wall-clock time of the shown planner: Table 2's second column
+};
+
+struct ReportInput {
+  std::string title = "Human-like grasping motions";
+  std::string program_version;
+  std::optional<DemonstrationPart> demonstrations;
+  std::optional<TransitionPart> transitions;
+  std::optional<SynergyPart> synergies;
+  std::optional<robot::RobotModel> hand;   ///< rooted at the palm (robot::load_hand); missing: no drawings of hands
+  std::optional<robot::RobotModel> robot;  ///< missing: no snapshots
+  std::optional<robot::Scene> scene;       ///< missing: no grasp pictures, no snapshots
+  std::optional<GraspPart> grasps;
+  std::optional<PathPart> path;
+  std::optional<VerifyPart> verification;
+  std::vector<ProvenanceItem> provenance;  ///< any order
+  std::optional<RunPart> run;
+};
+
+inline constexpr const char* kRunLogBegin = "<!-- run-log begin -->";
+inline constexpr const char* kRunLogEnd = "<!-- run-log end -->";
+
+/// One self-contained HTML page (no script, nothing loaded from elsewhere). Equal input gives equal bytes. Throws
+/// std::invalid_argument naming the field when sizes inside a part do not agree.
+std::string render_report(const ReportInput& input);
+
+}  // namespace opponens::report

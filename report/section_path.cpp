@@ -1,0 +1,296 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+
+#include "core/require.hpp"
+#include "report/paper_tables.hpp"
+#include "report/scene_drawing.hpp"
+#include "report/sections.hpp"
+
+namespace opponens::report {
+namespace {
+
+std::string words(PlanStatus status) {
+  switch (status) {
+    case PlanStatus::solved:
+      return "solved";
+    case PlanStatus::no_goals:
+      return "no goals";
+    case PlanStatus::start_in_collision:
+      return "start in collision";
+    case PlanStatus::start_out_of_limits:
+      return "start out of limits";
+    case PlanStatus::iteration_limit:
+      return "iteration limit";
+    case PlanStatus::check_limit:
+      return "check limit";
+    case PlanStatus::time_limit:
+      return "time limit";
+    case PlanStatus::interrupted:
+      return "interrupted";
+  }
+  return "";
+}
+
+std::optional<double> valid_share(const PlanResult& result) {
+  if (result.extends <= 0) return std::nullopt;
+  return static_cast<double>(result.extends_grown) / static_cast<double>(result.extends);
+}
+
+std::vector<std::string> planners(const PathPart& part) {
+  std::vector<std::string> names;
+  for (const auto& run : part.runs) {
+    if (std::find(names.begin(), names.end(), run.planner) == names.end()) names.push_back(run.planner);
+  }
+  return names;
+}
+
+/// Means over the solved runs of one planner, for Table 2; the success rate over all of them.
+void planner_row(Table& table, const PathPart& part, const std::string& planner) {
+  using Values = std::vector<std::optional<double>>;
+  int runs = 0;
+  Values iterations, checks, valid, length, likeness;
+  for (const auto& run : part.runs) {
+    if (run.planner != planner) continue;
+    ++runs;
+    if (run.result.status != PlanStatus::solved) continue;
+    iterations.emplace_back(static_cast<double>(run.result.iterations));
+    checks.emplace_back(static_cast<double>(run.result.collision_checks));
+    valid.push_back(valid_share(run.result));
+    length.emplace_back(run.result.length_l1);
+    if (!run.human_likeness.empty()) likeness.push_back(run.human_likeness.front().value);
+  }
+  const auto cell = [](const Values& values, int decimals, double factor, const char* unit) {
+    const auto mean = mean_of(values);
+    return mean ? text(concat({fixed(factor * *mean, decimals), unit})) : text("n/a");
+  };
+  const double success = static_cast<double>(iterations.size()) / std::max(1, runs);
+  table.row({text(concat({"here, ", planner, " (", std::to_string(runs), runs == 1 ? " run)" : " runs)"})),
+             text(percent(success, 0)),
+             {"<a href=\"#run\">see Run</a>"},
+             cell(iterations, 0, 1.0, ""),
+             cell(checks, 0, 1.0, ""),
+             cell(valid, 1, 100.0, " %"),
+             cell(length, 2, 1.0, " rad"),
+             cell(likeness, 1, 1.0, " %")});
+}
+
+Markup table_two(const PathPart& part) {
+  Table table("Planning beside the paper's Table 2 (means over solved runs)",
+              {"case", "success rate", "planning time", "# iterations", "# collision checks", "valid segments",
+               "path length", "human-likeness"});
+  for (const auto& planner : planners(part)) planner_row(table, part, planner);
+  for (const auto& row : kPaperTable2) {
+    table.row({text(row.name), text(concat({fixed(row.success_percent, 0), " %"})),
+               text(concat({fixed(row.planning_seconds, 2), " s"})), text(fixed(row.iterations, 0)),
+               text(fixed(row.collision_checks, 0)), text(concat({fixed(row.valid_percent, 1), " %"})),
+               text(concat({fixed(row.length_rad, 2), " rad"})), text(concat({fixed(row.likeness_percent, 1), " %"}))});
+  }
+  Markup out = table.str();
+  out += note(
+      "The paper's machine, robot model, scene, grasps and reference motions differ from ours, and its formula for "
+      "human-likeness is unpublished (ours is named in the documentation): read the columns for what they measure, not "
+      "as "
+      "a race. Valid segments: here the share of the extensions that grew a tree, in the paper of the iterations. Path "
+      "length: sum of weighted joint "
+      "movements.");
+  return out;
+}
+
+Markup run_table(const PathPart& part) {
+  Table table("Runs", {"planner", "seed", "status", "goal", "iterations", "collision checks", "length (rad)",
+                       "length, sum of joints (rad)", "human-likeness, with its reference"});
+  for (const auto& run : part.runs) {
+    const auto& result = run.result;
+    std::string likeness;
+    for (const auto& item : run.human_likeness) {
+      likeness += concat({likeness.empty() ? "" : "; ", item.value ? concat({fixed(*item.value, 1), " %"}) : "none",
+                          " (", item.reference, ")"});
+    }
+    table.row({text(run.planner), text(std::to_string(run.seed)),
+               badge(result.status == PlanStatus::solved, words(result.status)), text(std::to_string(result.goal)),
+               text(grouped(result.iterations)), text(grouped(result.collision_checks)), text(fixed(result.length, 2)),
+               text(fixed(result.length_l1, 2)), text(likeness)});
+  }
+  Markup out = table.str();
+  for (const auto& run : part.runs) {
+    if (!run.result.detail.empty()) {
+      out += note(concat({run.planner, ", seed ", std::to_string(run.seed), ": ", run.result.detail}));
+    }
+  }
+  return out;
+}
+
+/// Row after which `share` of the joint-space length from `first` to `last` has been covered.
+Eigen::Index row_at(const Eigen::MatrixXd& path, Eigen::Index last, double share) {
+  std::vector<double> covered{0.0};
+  for (Eigen::Index i = 1; i <= last; ++i) covered.push_back(covered.back() + (path.row(i) - path.row(i - 1)).norm());
+  const auto found = std::lower_bound(covered.begin(), covered.end(), share * covered.back());
+  return std::min<Eigen::Index>(last, found - covered.begin());
+}
+
+struct Snapshot {
+  Eigen::Index row;
+  std::string name;
+};
+
+std::vector<Snapshot> snapshots(const PathPart& part) {
+  const Eigen::Index last = part.path.waypoints.rows() - 1;
+  const Eigen::Index middle_end = part.pregrasp > 0 ? part.pregrasp : last;
+  const int between = std::max(1, part.pictures - (part.pregrasp > 0 ? 3 : 2));
+  std::vector<Snapshot> shots{{0, "start"}};
+  for (int i = 1; i <= between; ++i) {
+    const double share = static_cast<double>(i) / (between + 1);
+    shots.push_back({row_at(part.path.waypoints, middle_end, share), concat({percent(share, 0), " of the way"})});
+  }
+  if (part.pregrasp > 0) shots.push_back({part.pregrasp, "pre-grasp"});
+  shots.push_back({last, part.pregrasp > 0 ? "grasp" : "end"});
+  return shots;
+}
+
+std::string snapshot_caption(const PathPart& part, const Snapshot& shot) {
+  std::string caption = shot.name;
+  if (part.times.size() > 0) caption += concat({", t = ", fixed(part.times[shot.row], 2), " s"});
+  return caption;
+}
+
+/// Where the palm passes, in the world; at most about 120 points.
+std::vector<Eigen::Vector3d> palm_trail(const robot::RobotModel& robot, const robot::Scene& scene,
+                                        const std::vector<Eigen::VectorXd>& configurations) {
+  std::vector<Eigen::Vector3d> trail;
+  std::vector<Eigen::Isometry3d> X_RL;
+  const std::size_t step = std::max<std::size_t>(1, configurations.size() / 120);
+  for (std::size_t i = 0; i < configurations.size(); i += step) {
+    robot.link_poses(configurations[i], X_RL);
+    trail.push_back(scene.X_WR * X_RL[static_cast<std::size_t>(robot.palm())].translation());
+  }
+  if (configurations.empty()) return trail;
+  robot.link_poses(configurations.back(), X_RL);
+  trail.push_back(scene.X_WR * X_RL[static_cast<std::size_t>(robot.palm())].translation());
+  return trail;
+}
+
+struct CameraSetting {
+  Camera camera;
+  std::string words;
+  double width, height;
+  const char* css_class;
+};
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+Markup snapshot_rows(const ReportInput& input) {
+  const auto& part = *input.path;
+  const auto& robot = *input.robot;
+  const auto& scene = *input.scene;
+  const std::string object = input.grasps ? input.grasps->object : scene.object;
+  std::vector<Eigen::VectorXd> all;
+  const Eigen::VectorXd rest = rest_configuration(robot);
+  for (Eigen::Index i = 0; i < part.path.waypoints.rows(); ++i) {
+    all.push_back(by_name(robot, part.path.joint_names, part.path.waypoints.row(i).transpose(), rest));
+  }
+  const auto shots = snapshots(part);
+  std::vector<Eigen::VectorXd> shown;
+  for (const auto& shot : shots) shown.push_back(all[static_cast<std::size_t>(shot.row)]);
+  const auto trail = palm_trail(robot, scene, all);
+  const DrawnScene drawn = drawn_scene(robot, scene, object, 5000);
+  const std::vector<CameraSetting> cameras{
+      {{42.0 * kDegree, 22.0 * kDegree},
+       "from behind the robot's left shoulder, 42\u00B0 off the line from robot to object, 22\u00B0 above the horizon",
+       520.0,
+       440.0,
+       "shots"},
+      {{-75.0 * kDegree, 12.0 * kDegree},
+       "from the robot's right, 75\u00B0 off that line, 12\u00B0 above the horizon",
+       260.0,
+       240.0,
+       "shots small"}};
+  Markup out;
+  for (const auto& setting : cameras) {
+    const View view = scene_view(robot, scene, object, drawn, setting.camera, shown, setting.width, setting.height);
+    std::vector<Markup> figures;
+    for (std::size_t i = 0; i < shots.size(); ++i) {
+      const std::string caption = snapshot_caption(part, shots[i]);
+      figures.push_back(figure(
+          draw_scene(robot, scene, drawn, view, shown[i], trail, concat({"Robot and scene: ", caption})), caption));
+    }
+    out += subheading(concat({"Seen ", setting.words}));
+    out += row_of(figures, setting.css_class);
+  }
+  out += note(
+      "Blue line: the way of the palm, from the open to the filled dot. Robot and object show faintly through "
+      "what hides them. Shapes are the collision geometry.");
+  return out;
+}
+
+Markup curves(const ReportInput& input) {
+  const auto& part = *input.path;
+  const auto& names = part.path.joint_names;
+  const Eigen::Index rows = part.path.waypoints.rows();
+  const bool timed = part.times.size() > 0;
+  const Eigen::VectorXd axis =
+      timed ? part.times : Eigen::VectorXd(Eigen::VectorXd::LinSpaced(rows, 0.0, static_cast<double>(rows - 1)));
+  std::vector<TimeMark> marks;
+  if (part.pregrasp > 0) marks.push_back({"pre-grasp", axis[part.pregrasp]});
+  const int arm = input.robot ? input.robot->arm().count : 0;
+  const int split = std::clamp(arm, 0, static_cast<int>(names.size()));
+  Markup out = subheading("Joint positions along the path");
+  const std::string label = timed ? "time (s)" : "waypoint";
+  const std::vector<std::string> arm_names(names.begin(), names.begin() + split);
+  const std::vector<std::string> hand_names(names.begin() + split, names.end());
+  if (split > 0) out += joint_charts(arm_names, axis, label, part.path.waypoints.leftCols(split), marks, 3);
+  out += joint_charts(hand_names, axis, label,
+                      part.path.waypoints.rightCols(static_cast<Eigen::Index>(hand_names.size())), marks, 4);
+  return out;
+}
+
+void check(const PathPart& part) {
+  const Eigen::Index rows = part.path.waypoints.rows();
+  require(part.path.waypoints.cols() == static_cast<Eigen::Index>(part.path.joint_names.size()) || rows == 0,
+          "path: waypoints have another number of columns than joint names");
+  require(part.times.size() == 0 || part.times.size() == rows, "path: times differ in number from the waypoints");
+  require(part.pregrasp < rows || rows == 0, "path: pregrasp lies beyond the last waypoint");
+}
+
+}  // namespace
+
+std::optional<double> mean_of(const std::vector<std::optional<double>>& values) {
+  double sum = 0.0;
+  int count = 0;
+  for (const auto& value : values) {
+    if (!value) continue;
+    sum += *value;
+    ++count;
+  }
+  return count > 0 ? std::optional<double>(sum / count) : std::nullopt;
+}
+
+Markup path_section(const ReportInput& input) {
+  if (!input.path) return note("No path has been planned yet.");
+  const auto& part = *input.path;
+  check(part);
+  Markup out;
+  if (part.path.waypoints.rows() >= 2) {
+    const auto& run = part.runs.empty() ? PlanRun{} : part.runs.front();
+    Markup words{concat({"<p>Path ", identifier(part.id).html, ", planner ", escape(run.planner), ", seed ",
+                         std::to_string(run.seed)})};
+    if (!part.goal_grasp.empty()) words.html += concat({", reaching grasp ", identifier(part.goal_grasp).html});
+    words.html += concat({": ", std::to_string(part.path.waypoints.rows()),
+                          " waypoints, shortcuts and closing segment included.</p>\n"});
+    out += words;
+    out += input.robot && input.scene ? snapshot_rows(input)
+                                      : note("The robot's model or the scene was not given: no snapshots.");
+    out += curves(input);
+  } else {
+    out += note("The planner found no path.");
+  }
+  out += subheading("Numbers");
+  out += run_table(part);
+  out += table_two(part);
+  return out;
+}
+
+}  // namespace opponens::report

@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+
+#include "report/sections.hpp"
+
+namespace opponens::report {
+namespace {
+
+std::string recordings_words(const DemonstrationPart& part) {
+  int recordings = 0;
+  int samples = 0;
+  for (const auto& group : part.groups) {
+    recordings += group.recordings;
+    samples += group.samples;
+  }
+  std::string origin = "all recorded";
+  if (part.simulated >= recordings) origin = "all SIMULATED";
+  if (part.simulated > 0 && part.simulated < recordings) {
+    origin = concat({std::to_string(part.simulated), " of them SIMULATED"});
+  }
+  return concat({grouped(recordings), " with ", grouped(samples), " samples, ", origin});
+}
+
+std::string synergy_words(const SynergyPart& part) {
+  std::string words;
+  for (const auto& item : part.groups) {
+    words +=
+        concat({words.empty() ? "" : ", ", item.group.name, ": ", std::to_string(item.group.box.half_width.size())});
+  }
+  return words.empty() ? std::string("none") : words;
+}
+
+std::string grasp_words(const GraspPart& part) {
+  const auto closed = std::count_if(part.items.begin(), part.items.end(),
+                                    [](const GraspItem& item) { return item.grasp.quality.force_closure(); });
+  std::string words =
+      concat({std::to_string(part.items.size()), " of ", part.object, ", ", std::to_string(closed), " force closure"});
+  std::optional<double> best;
+  for (const auto& item : part.items) {
+    const auto& epsilon = item.grasp.quality.epsilon;
+    if (epsilon && (!best || *epsilon > *best)) best = epsilon;
+  }
+  if (best) words += concat({", best \u03B5 ", significant(*best)});
+  return words;
+}
+
+std::string path_words(const PathPart& part) {
+  if (part.runs.empty()) return "not available";
+  const auto& run = part.runs.front();
+  if (run.result.status != PlanStatus::solved)
+    return concat({"none found by ", run.planner, ", seed ", std::to_string(run.seed)});
+  return concat({fixed(run.result.length_l1, 2), " rad (sum of weighted joint movements) by ", run.planner, ", seed ",
+                 std::to_string(run.seed)});
+}
+
+std::string likeness_words(const PathPart& part) {
+  std::string words;
+  if (!part.runs.empty()) {
+    for (const auto& item : part.runs.front().human_likeness) {
+      words += concat({words.empty() ? "" : "; ", item.value ? concat({fixed(*item.value, 1), " %"}) : "none",
+                       ", reference: ", item.reference});
+    }
+  }
+  return words.empty() ? std::string("no reference") : words;
+}
+
+Markup verdict(const VerifyPart& part) {
+  const auto failed =
+      std::count_if(part.verdicts.begin(), part.verdicts.end(), [](const Verdict& v) { return !v.passed; });
+  if (failed == 0) return badge(true, concat({"all ", std::to_string(part.checked), " objects passed"}));
+  return badge(false, concat({std::to_string(failed), " of ", std::to_string(part.checked), " objects failed"}));
+}
+
+}  // namespace
+
+Markup summary_section(const ReportInput& input) {
+  const std::string missing = "not available";
+  Table table("Key numbers", {"what", "result"});
+  table.row({text("recordings"), text(input.demonstrations ? recordings_words(*input.demonstrations) : missing)});
+  table.row({text("groups"), text(input.demonstrations ? concat({std::to_string(input.demonstrations->groups.size()),
+                                                                 " by ", input.demonstrations->grouped_by})
+                                                       : missing)});
+  table.row({text("synergies kept (k)"), text(input.synergies ? synergy_words(*input.synergies) : missing)});
+  table.row({text("grasps"), text(input.grasps ? grasp_words(*input.grasps) : missing)});
+  table.row({text("path length"), text(input.path ? path_words(*input.path) : missing)});
+  table.row({text("human-likeness"), text(input.path ? likeness_words(*input.path) : missing)});
+  table.row({text("verification"), input.verification ? verdict(*input.verification) : text(missing)});
+  return table.str();
+}
+
+}  // namespace opponens::report

@@ -1,0 +1,241 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "core/require.hpp"
+#include "report/hand_drawing.hpp"
+#include "report/line_plot.hpp"
+#include "report/paper_tables.hpp"
+#include "report/sections.hpp"
+#include "report/svg.hpp"
+
+namespace opponens::report {
+namespace {
+
+/// Percent of the variance in the first i + 1 synergies.
+Eigen::VectorXd cumulative_percent(const Eigen::VectorXd& variance) {
+  Eigen::VectorXd sum(variance.size());
+  double so_far = 0.0;
+  for (Eigen::Index i = 0; i < variance.size(); ++i) sum[i] = so_far += variance[i];
+  const double total = variance.sum();
+  return total > 0.0 ? Eigen::VectorXd(100.0 * sum / total)
+                     : Eigen::VectorXd(100.0 * Eigen::VectorXd::Ones(variance.size()));
+}
+
+int kept(const SynergyItem& item) { return static_cast<int>(item.group.box.half_width.size()); }
+
+bool is_pre_grasp(const SynergyItem& item) { return item.group.phase == "pre-grasp"; }
+
+/// The row of Table 1 that a group is compared with; with groups by object only the pre-grasp's, as context.
+const PaperVariance* reference_of(const SynergyPart& part, const SynergyItem& item) {
+  if (is_pre_grasp(item)) return paper_variance("pre-grasp");
+  return part.grouped_by == "family" && item.group.phase == "grasp" ? paper_variance(item.group.name) : nullptr;
+}
+
+void check(const SynergyPart& part) {
+  const auto n = static_cast<Eigen::Index>(part.joint_names.size());
+  for (const auto& item : part.groups) {
+    const auto& group = item.group;
+    const auto fits = [&](Eigen::Index size) { return size == n || size == 0; };
+    require(group.basis.variance.size() == n && group.basis.mean.size() == n && group.basis.axes.rows() == n &&
+                group.basis.axes.cols() == n && group.box.scale.size() == n && group.box.half_width.size() <= n &&
+                fits(item.cumulative_low.size()) && item.cumulative_high.size() == item.cumulative_low.size(),
+            [&] {
+              return concat({"synergy group '", group.name, "': sizes do not fit the joint names"});
+            });
+  }
+}
+
+/// Percent at which the plots of all groups start, so that they can be compared by eye.
+double lowest_percent(const SynergyPart& part) {
+  double lowest = 100.0;
+  for (const auto& item : part.groups) {
+    if (item.group.basis.variance.size() > 0)
+      lowest = std::min(lowest, cumulative_percent(item.group.basis.variance)[0]);
+    if (item.cumulative_low.size() > 0) lowest = std::min(lowest, 100.0 * item.cumulative_low[0]);
+    if (const auto* paper = reference_of(part, item)) lowest = std::min(lowest, paper->percent[0]);
+  }
+  return 10.0 * std::floor(std::max(0.0, lowest) / 10.0);
+}
+
+Markup variance_plot(const SynergyPart& part, const SynergyItem& item, int color) {
+  const auto& group = item.group;
+  const Eigen::VectorXd percent_sum = cumulative_percent(group.basis.variance);
+  const Eigen::VectorXd count =
+      Eigen::VectorXd::LinSpaced(percent_sum.size(), 1.0, static_cast<double>(percent_sum.size()));
+  LinePlot plot;
+  plot.title = concat({"Cumulative variance of ", group.name});
+  plot.x = {"number of synergies", 0.5, static_cast<double>(percent_sum.size()) + 0.5, true};
+  plot.y = {"cumulative variance (%)", lowest_percent(part), 101.0};
+  plot.width = 510.0;
+  plot.height = 270.0;
+  Series ours{"this analysis", count, percent_sum, series_color(color), {}};
+  ours.markers = true;
+  if (item.cumulative_low.size() > 0) {
+    ours.band = Band{100.0 * item.cumulative_low, 100.0 * item.cumulative_high};
+    ours.label += concat({" (band: ", percent(part.interval_level, 0), " interval)"});
+  }
+  plot.series.push_back(ours);
+  const bool compared = part.grouped_by == "family";
+  if (const auto* paper = reference_of(part, item)) {
+    Series theirs{concat({"Table 1, ", paper->name, compared ? "" : " (context)"}),
+                  Eigen::VectorXd::LinSpaced(9, 1.0, 9.0),
+                  Eigen::Map<const Eigen::VectorXd>(paper->percent.data(), 9),
+                  "var(--paper)",
+                  {}};
+    theirs.dashed = true;
+    theirs.markers = true;
+    plot.series.push_back(theirs);
+  }
+  plot.marks.push_back(
+      {concat({"k = ", std::to_string(kept(item))}), static_cast<double>(kept(item)), series_color(color)});
+  plot.marks.push_back({percent(1.0 - group.box.beta, 0), 100.0 * (1.0 - group.box.beta), "var(--soft)", true, true});
+  std::string caption = is_pre_grasp(item) ? std::string("Pre-grasp phase, all groups together.")
+                                           : concat({"Grasp phase, ", part.grouped_by, " ", group.name, "."});
+  if (group.phase == "all") caption = concat({"Whole movement, ", group.name, "."});
+  return figure(render(plot), caption);
+}
+
+std::string coverage_words(const Coverage& coverage) {
+  std::string words =
+      concat({percent(coverage.in_sample), " / ", coverage.held_out ? percent(*coverage.held_out) : "n/a"});
+  if (coverage.interval) {
+    words +=
+        concat({" [", fixed(100.0 * coverage.interval->low, 1), ", ", fixed(100.0 * coverage.interval->high, 1), "]"});
+  }
+  return words + concat({" of ", percent(coverage.nominal)});
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string out;
+  for (const auto& word : words) out += concat({out.empty() ? "" : ", ", word});
+  return out.empty() ? std::string("none") : out;
+}
+
+Markup number_table(const SynergyPart& part) {
+  Table table(
+      "Synergies and boxes. Half widths in rad of the scaled space (scale 1: rad).",
+      {"group", "samples", "k", "k in Table 1", "dof effective", "half widths of the k-box", "dropped channels"});
+  for (const auto& item : part.groups) {
+    std::string widths;
+    for (const double h : item.group.box.half_width) widths += concat({widths.empty() ? "" : "  ", fixed(h, 3)});
+    const auto* paper = reference_of(part, item);
+    table.row({text(item.group.name), text(grouped(item.samples)), text(std::to_string(kept(item))),
+               text(paper ? std::to_string(paper->k) : std::string()), text(std::to_string(item.group.dof_effective)),
+               text(widths), text(joined(item.group.dropped_channels))});
+  }
+  return table.str();
+}
+
+Markup coverage_table(const SynergyPart& part) {
+  Table table(concat({"Share of the samples inside the box: in-sample / held out [", percent(part.interval_level, 0),
+                      " interval] of nominal. Held out: one ", part.cluster, " left out at a time."}),
+              {"group", "full box (all effective axes)", "first k coordinates"});
+  for (const auto& item : part.groups) {
+    if (!item.full_box && !item.reduced_box) continue;
+    table.row({text(item.group.name), text(item.full_box ? coverage_words(*item.full_box) : std::string()),
+               text(item.reduced_box ? coverage_words(*item.reduced_box) : std::string())});
+  }
+  return table.empty() ? Markup{} : table.str();
+}
+
+Markup paper_table() {
+  Table table("The paper's Table 1: accumulated sample variance (%) after k synergies (100 at k = 16)",
+              {"group", "k = 1", "2", "3", "4", "5", "6", "7", "8", "9", "k for 95 %"});
+  for (const auto& row : kPaperTable1) {
+    std::vector<Markup> cells{text(row.name)};
+    for (const double value : row.percent) cells.push_back(text(fixed(value, 3)));
+    cells.push_back(text(std::to_string(row.k)));
+    table.row(cells);
+  }
+  return table.str();
+}
+
+std::string comparison_words(const SynergyPart& part) {
+  if (part.grouped_by == "family") {
+    return "Dashed: the paper's Table 1 for the same phase and family (its recordings are not published; only these "
+           "figures are).";
+  }
+  return concat({"Groups here are formed by ", part.grouped_by,
+                 ", the paper's by grasp family: Table 1 is not comparable group by group. Its pre-grasp column is "
+                 "drawn dashed as context, and the table is given in full below."});
+}
+
+/// Half width along synergy i: the box's, or where the box leaves the synergy out two standard deviations.
+double drawn_half_width(const SynergyGroup& group, Eigen::Index i) {
+  return i < group.box.half_width.size() ? group.box.half_width[i]
+                                         : 2.0 * std::sqrt(std::max(0.0, group.basis.variance[i]));
+}
+
+Markup draw_synergy(const robot::RobotModel& hand, const RobotFacets& facets, const SynergyPart& part,
+                    const SynergyItem& item, Eigen::Index i) {
+  const auto& group = item.group;
+  const double h = drawn_half_width(group, i);
+  const bool in_box = i < group.box.half_width.size();
+  std::vector<Posture> postures;
+  for (const int side : {-1, 0, 1}) {
+    const Eigen::VectorXd x = group.basis.mean + side * h * group.basis.axes.col(i);
+    const Eigen::VectorXd q = group.box.scale.cwiseProduct(x);
+    const std::string words = side == 0 ? "mean" : side < 0 ? "mean - h" : "mean + h";
+    postures.push_back({by_name(hand, part.joint_names, q, rest_configuration(hand)), words});
+  }
+  const double total = group.basis.variance.sum();
+  const double share = total > 0.0 ? group.basis.variance[i] / total : 0.0;
+  const std::string name = concat({"Synergy ", std::to_string(i + 1), " of ", group.name});
+  const std::string caption =
+      concat({"Synergy ", std::to_string(i + 1), ": ", percent(share), " of the variance, h = ", fixed(h, 2),
+              in_box ? "" : " (not in the k-box: two standard deviations)"});
+  return figure(draw_postures(hand, facets, postures, name, 172.0, 190.0), caption);
+}
+
+}  // namespace
+
+Markup synergy_section(const ReportInput& input) {
+  if (!input.synergies) return note("The demonstrations have not been analysed yet: no synergies.");
+  const auto& part = *input.synergies;
+  check(part);
+  Markup out =
+      paragraph(concat({"Synergies are the principal axes of the hand's joint positions in one phase: of all "
+                        "movements together before the transition, of each group after it. k is the number of "
+                        "them that holds the stated share of the variance. ",
+                        comparison_words(part)}));
+  std::vector<Markup> plots;
+  int color = 0;
+  for (const auto& item : part.groups) plots.push_back(variance_plot(part, item, color++));
+  out += row_of(plots);
+  out += number_table(part);
+  if (!part.groups.empty()) {
+    const auto& box = part.groups.front().group.box;
+    out += note(concat({"Boxes are sized for alpha = ", percent(box.alpha), " and beta = ", percent(box.beta),
+                        ", root ", part.box_root, "."}));
+  }
+  out += coverage_table(part);
+  out += details("Table 1 of the paper", paper_table());
+  return out;
+}
+
+Markup synergy_drawing_section(const ReportInput& input) {
+  if (!input.synergies) return note("No synergies to draw.");
+  if (!input.hand) return note("The hand's model was not given: its shape cannot be drawn.");
+  check(*input.synergies);
+  const RobotFacets facets = robot_facets(*input.hand, 2400);
+  Markup out = paragraph(
+      "The robot hand at the mean of each group and at both ends of its box along the first two synergies, clipped to "
+      "the joint limits. h is the half width of the box.");
+  for (const auto& item : input.synergies->groups) {
+    out += subheading(item.group.name == "pre-grasp"
+                          ? "Pre-grasp"
+                          : concat({item.group.phase == "grasp" ? "Grasp phase, " : "Whole movement, ",
+                                    input.synergies->grouped_by, " ", item.group.name}));
+    std::vector<Markup> drawings;
+    for (Eigen::Index i = 0; i < std::min<Eigen::Index>(2, item.group.basis.variance.size()); ++i) {
+      drawings.push_back(draw_synergy(*input.hand, facets, *input.synergies, item, i));
+    }
+    out += row_of(drawings);
+  }
+  return out;
+}
+
+}  // namespace opponens::report

@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "robot/read_urdf.hpp"
+#include "robot/yaml_file.hpp"
+
+namespace opponens::robot {
+
+/// A name in a YAML file, kept with its place for messages.
+struct NamedValue {
+  std::string name;
+  YamlValue where;
+};
+
+struct NamedPoint {
+  SurfacePoint point;  ///< link index not yet known
+  NamedValue link;
+};
+
+/// The content of a hand.yaml, before its URDF is read.
+struct HandFile {
+  std::filesystem::path urdf;
+  UrdfSettings urdf_settings;
+  NamedValue palm_link;
+  std::vector<NamedValue> joints;
+  std::vector<NamedPoint> tips;
+  std::vector<NamedPoint> contact_points;
+  std::vector<std::pair<NamedValue, NamedValue>> allowed_collisions;
+  std::optional<YamlValue> mapping;
+};
+
+/// Throws InputError naming file, line and field.
+HandFile read_hand_file(const std::filesystem::path& hand_yaml);
+
+/// Parts that hand.yaml and robot.yaml share.
+PackagePaths read_packages(const YamlValue& file);
+LinkGeometry read_link_geometry(const YamlValue& file);
+std::vector<NamedValue> read_names(const YamlValue& list);
+std::vector<std::pair<NamedValue, NamedValue>> read_pairs(const YamlValue& file);
+
+}  // namespace opponens::robot

@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "robot/geometry.hpp"
+
+namespace opponens::robot {
+
+/// A shape prepared for collision queries: FCL geometry, bounding volumes, and for meshes the solids that their closed
+/// components enclose. Cheap to copy (shared), immutable, thread-safe.
+class CollisionShape {
+ public:
+  explicit CollisionShape(const Shape& shape);
+
+  const Eigen::Vector3d& center() const { return center_; }              ///< m, of the bounding box and sphere, in G
+  const Eigen::Vector3d& half_extents() const { return half_extents_; }  ///< m, of the bounding box along G's axes
+  double radius() const { return radius_; }                              ///< m, of the bounding sphere about center
+
+  /// A mesh with a component that is not closed: that component is a surface without an inside.
+  bool open_surface() const;
+
+  struct Data;
+  const Data& data() const { return *data_; }
+
+ private:
+  std::shared_ptr<const Data> data_;
+  Eigen::Vector3d center_;
+  Eigen::Vector3d half_extents_;
+  double radius_;
+};
+
+/// Whether two solids share a point: FCL (closed forms, GJK of libccd with its tolerance of 1e-6 m, or triangle tests;
+/// for a sphere and a mesh our exact tree instead, which agrees with it and is ten times faster), then containment,
+/// which FCL's mesh surfaces do not see. Containment tests one point per connected component, enough once the surfaces
+/// are known to be apart. Points count as inside a mesh when they lie in more of its closed components than of its
+/// cavities, so meshes whose parts overlap are solid throughout.
+bool intersect(const CollisionShape& a, const Eigen::Isometry3d& X_WA, const CollisionShape& b,
+               const Eigen::Isometry3d& X_WB);
+
+/// Distance between two solids, m; 0 when they intersect, and at least 1e-9 when they do not (a distance can round to
+/// nothing where the collision test still tells the two apart). Primitives: a proven lower bound within 1e-7 m of the
+/// distance (convex_distance). A sphere and a mesh: exact. Other pairs with a mesh: fcl::distance.
+double separation(const CollisionShape& a, const Eigen::Isometry3d& X_WA, const CollisionShape& b,
+                  const Eigen::Isometry3d& X_WB);
+
+/// A box with its centre and orientation in the world.
+struct OrientedBox {
+  Eigen::Vector3d center;
+  Eigen::Matrix3d axes;  ///< columns, orthonormal
+  Eigen::Vector3d half_extents;
+};
+
+/// Lower bound of the distance from a point to a box; 0 inside. Exact.
+double point_box_distance(const Eigen::Vector3d& p, const OrientedBox& box);
+
+/// Whether one of the 15 axes of the separating axis theorem keeps two boxes more than margin apart (Gottschalk 1996).
+bool boxes_apart(const OrientedBox& a, const OrientedBox& b, double margin);
+
+}  // namespace opponens::robot

@@ -1,0 +1,313 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "robot/read_urdf.hpp"
+
+#include <cmath>
+#include <fstream>
+#include <memory>
+#include <mutex>
+#include <numbers>
+#include <sstream>
+#include <tuple>
+
+#include <console_bridge/console.h>
+#include <tinyxml.h>
+#include <urdf_parser/urdf_parser.h>
+
+#include "core/require.hpp"
+#include "robot/mesh.hpp"
+
+namespace opponens::robot {
+
+namespace {
+
+using MeshCache = std::map<std::tuple<std::string, double, double, double>, std::shared_ptr<const TriangleMesh>>;
+
+[[noreturn]] void fail(const std::filesystem::path& file, const std::string& message) {
+  throw InputError(file.string() + ": " + message);
+}
+
+/// Keeps what urdfdom would print: its first complaint is the reason that the caller is told.
+class CapturedLog : public console_bridge::OutputHandler {
+ public:
+  CapturedLog() { console_bridge::useOutputHandler(this); }
+  ~CapturedLog() override { console_bridge::restorePreviousOutputHandler(); }
+  CapturedLog(const CapturedLog&) = delete;
+  CapturedLog& operator=(const CapturedLog&) = delete;
+
+  void log(const std::string& text, console_bridge::LogLevel level, const char*, int) override {
+    if (level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR && first_error_.empty()) first_error_ = text;
+  }
+  const std::string& first_error() const { return first_error_; }
+
+ private:
+  std::string first_error_;
+};
+
+std::string read_text(const std::filesystem::path& file) {
+  if (std::filesystem::is_directory(file)) fail(file, "is a directory, expected a URDF file");
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) fail(file, "cannot be opened");
+  std::stringstream content;
+  content << stream.rdbuf();
+  return content.str();
+}
+
+urdf::ModelInterfaceSharedPtr parse(const std::filesystem::path& file, const std::string& text) {
+  static std::mutex mutex;  // console_bridge's handler is one per process
+  const std::lock_guard lock(mutex);
+  const CapturedLog log;
+  urdf::ModelInterfaceSharedPtr model;
+  try {
+    model = urdf::parseURDF(text);
+  } catch (const std::exception& error) {  // urdfdom lets some number conversions escape
+    fail(file, std::string("not a valid URDF: ") + error.what());
+  }
+  if (!model) fail(file, "not a valid URDF: " + (log.first_error().empty() ? "no reason given" : log.first_error()));
+  return model;
+}
+
+/// What only the text shows: the order of the joints, links that two joints claim, and tags nobody reads.
+struct Outline {
+  std::vector<std::string> joints;     ///< in the file's order
+  std::map<std::string, int> ignored;  ///< tag -> how often
+};
+
+void count_ignored(const TiXmlElement& element, Outline& outline) {
+  static const std::map<std::string, std::set<std::string>> kRead = {
+      {"robot", {"link", "joint"}},
+      {"link", {"visual", "collision"}},
+      {"joint", {"parent", "child", "origin", "axis", "limit", "mimic"}}};
+  const std::set<std::string>& read = kRead.at(element.ValueStr());
+  for (const TiXmlElement* child = element.FirstChildElement(); child; child = child->NextSiblingElement()) {
+    const std::string& tag = child->ValueStr();
+    if (!read.contains(tag)) {
+      ++outline.ignored[tag];
+    } else if (tag == "link" || tag == "joint") {
+      count_ignored(*child, outline);
+    }
+  }
+}
+
+Outline outline_of(const std::filesystem::path& file, const std::string& text) {
+  TiXmlDocument document;
+  document.Parse(text.c_str());
+  if (document.Error()) {
+    fail(file, "line " + std::to_string(document.ErrorRow()) + ": not XML: " + document.ErrorDesc());
+  }
+  const TiXmlElement* robot = document.FirstChildElement("robot");
+  if (!robot) fail(file, "has no <robot> element");
+  Outline outline;
+  std::map<std::string, std::string> joint_of_child;
+  for (const TiXmlElement* joint = robot->FirstChildElement("joint"); joint;
+       joint = joint->NextSiblingElement("joint")) {
+    const char* name = joint->Attribute("name");
+    const TiXmlElement* child = joint->FirstChildElement("child");
+    const char* link = child ? child->Attribute("link") : nullptr;
+    if (!name || !link) continue;  // urdfdom complains about both
+    const auto [other, is_new] = joint_of_child.emplace(link, name);
+    if (!is_new) {
+      fail(file, "line " + std::to_string(joint->Row()) + ": link '" + link + "' is the child of two joints, '" +
+                     other->second + "' and '" + name + "': a tree is needed");
+    }
+    outline.joints.emplace_back(name);
+  }
+  count_ignored(*robot, outline);
+  return outline;
+}
+
+Eigen::Vector3d vector_of(const urdf::Vector3& v) { return {v.x, v.y, v.z}; }
+
+Eigen::Isometry3d pose_of(const urdf::Pose& pose, const std::filesystem::path& file, const std::string& element) {
+  const urdf::Rotation& r = pose.rotation;
+  Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
+  X.linear() = Eigen::Quaterniond(r.w, r.x, r.y, r.z).normalized().toRotationMatrix();
+  X.translation() = vector_of(pose.position);
+  if (!X.matrix().allFinite()) fail(file, element + ": origin is not finite");
+  return X;
+}
+
+std::filesystem::path mesh_path(const std::string& name, const std::filesystem::path& urdf_file,
+                                const PackagePaths& packages, const std::string& element) {
+  static const std::string kPackage = "package://";
+  static const std::string kFile = "file://";
+  if (name.starts_with(kFile)) return name.substr(kFile.size());
+  if (!name.starts_with(kPackage)) {
+    const std::filesystem::path path = name;
+    return path.is_absolute() ? path : urdf_file.parent_path() / path;
+  }
+  const std::size_t slash = name.find('/', kPackage.size());
+  const std::string package = name.substr(kPackage.size(), slash - kPackage.size());
+  const std::string rest = slash == std::string::npos ? "" : name.substr(slash + 1);
+  if (const auto found = packages.directories.find(package); found != packages.directories.end()) {
+    return found->second / rest;
+  }
+  for (const std::filesystem::path& root : packages.roots) {
+    if (std::filesystem::is_directory(root / package)) return root / package / rest;
+  }
+  fail(urdf_file, element + ": mesh '" + name + "': package '" + package + "' has no path (key packages)");
+}
+
+bool positive(double value) { return std::isfinite(value) && value > 0.0; }
+
+Shape shape_of(const urdf::Geometry& geometry, const std::filesystem::path& file, const UrdfSettings& settings,
+               const std::string& element, MeshCache& cache) {
+  if (geometry.type == urdf::Geometry::SPHERE) {
+    const double radius = static_cast<const urdf::Sphere&>(geometry).radius;
+    if (!positive(radius)) fail(file, element + ": sphere radius must be positive");
+    return Sphere{radius};
+  }
+  if (geometry.type == urdf::Geometry::BOX) {
+    const Eigen::Vector3d size = vector_of(static_cast<const urdf::Box&>(geometry).dim);
+    if (!size.allFinite() || size.minCoeff() <= 0.0) fail(file, element + ": box size must be positive");
+    return Box{size};
+  }
+  if (geometry.type == urdf::Geometry::CYLINDER) {
+    const auto& cylinder = static_cast<const urdf::Cylinder&>(geometry);
+    if (!positive(cylinder.radius) || !positive(cylinder.length)) {
+      fail(file, element + ": cylinder radius and length must be positive");
+    }
+    return Cylinder{cylinder.radius, cylinder.length};
+  }
+  const auto& mesh = static_cast<const urdf::Mesh&>(geometry);
+  const std::filesystem::path path = mesh_path(mesh.filename, file, settings.packages, element);
+  const Eigen::Vector3d scale = vector_of(mesh.scale);
+  if (!std::filesystem::is_regular_file(path)) {
+    fail(file, element + ": mesh '" + mesh.filename + "' does not exist: " + path.string());
+  }
+  if (!scale.allFinite() || (scale.array() == 0.0).any()) fail(file, element + ": mesh scale must be finite, not 0");
+  auto& entry = cache[{path.string(), scale.x(), scale.y(), scale.z()}];
+  if (!entry) entry = load_mesh(path, scale);
+  return entry;
+}
+
+template <typename Elements>
+std::vector<Geometry> geometry_of(const Elements& elements, const std::filesystem::path& file,
+                                  const UrdfSettings& settings, const std::string& element, MeshCache& cache) {
+  std::vector<Geometry> result;
+  for (const auto& shape : elements) {
+    if (!shape || !shape->geometry) continue;
+    result.push_back(
+        {shape_of(*shape->geometry, file, settings, element, cache), pose_of(shape->origin, file, element)});
+  }
+  return result;
+}
+
+Joint joint_of(const urdf::Joint& source, const std::filesystem::path& file, std::vector<std::string>& notes) {
+  const std::string element = "joint '" + source.name + "'";
+  Joint joint;
+  joint.name = source.name;
+  joint.X_PJ = pose_of(source.parent_to_joint_origin_transform, file, element);
+  if (source.type == urdf::Joint::FIXED) return joint;
+  const bool continuous = source.type == urdf::Joint::CONTINUOUS;
+  if (source.type != urdf::Joint::REVOLUTE && source.type != urdf::Joint::PRISMATIC && !continuous) {
+    fail(file, element + ": type planar or floating is not supported (fixed, revolute, continuous, prismatic are)");
+  }
+  joint.type = source.type == urdf::Joint::PRISMATIC ? JointType::prismatic : JointType::revolute;
+  const double length = vector_of(source.axis).norm();
+  if (!positive(length)) fail(file, element + ": axis must be a finite vector that is not zero");
+  joint.axis = vector_of(source.axis) / length;
+  if (source.limits) {
+    joint.velocity = source.limits->velocity;
+    joint.lower = source.limits->lower;
+    joint.upper = source.limits->upper;
+  }
+  if (continuous) {
+    joint.lower = -2.0 * std::numbers::pi;
+    joint.upper = 2.0 * std::numbers::pi;
+    notes.push_back(element + " is continuous: its position is limited to two turns, -2 pi to 2 pi");
+  } else if (!source.limits) {
+    fail(file, element + ": has no <limit>");
+  }
+  if (!std::isfinite(joint.lower) || !std::isfinite(joint.upper) || !std::isfinite(joint.velocity)) {
+    fail(file, element + ": limit is not finite");
+  }
+  if (joint.lower > joint.upper) fail(file, element + ": lower limit is above the upper limit");
+  if (source.mimic) {
+    joint.mimic = Mimic{source.mimic->joint_name, source.mimic->multiplier, source.mimic->offset};
+    if (!std::isfinite(joint.mimic->multiplier) || !std::isfinite(joint.mimic->offset)) {
+      fail(file, element + ": mimic is not finite");
+    }
+  }
+  return joint;
+}
+
+/// Depth-first from the root, siblings in the file's order.
+void append_tree(const urdf::ModelInterface& model, const std::map<std::string, std::vector<std::string>>& children,
+                 const std::filesystem::path& file, RobotDescription& description, const std::string& root) {
+  std::vector<std::pair<std::string, int>> open = {{root, -1}};  // joint name (or root link), parent link
+  while (!open.empty()) {
+    const auto [name, parent] = open.back();
+    open.pop_back();
+    Link link;
+    if (parent < 0) {
+      link.name = name;
+    } else {
+      Joint joint = joint_of(*model.joints_.at(name), file, description.notes);
+      link.name = model.joints_.at(name)->child_link_name;
+      link.joint = static_cast<int>(description.joints.size());
+      joint.parent = parent;
+      joint.child = static_cast<int>(description.links.size());
+      description.joints.push_back(std::move(joint));
+    }
+    const int index = static_cast<int>(description.links.size());
+    if (const auto found = children.find(link.name); found != children.end()) {
+      for (auto joint = found->second.rbegin(); joint != found->second.rend(); ++joint)
+        open.emplace_back(*joint, index);
+    }
+    description.links.push_back(std::move(link));
+  }
+}
+
+void check_mimics(const RobotDescription& description, const std::filesystem::path& file) {
+  std::map<std::string, const Joint*> by_name;
+  for (const Joint& joint : description.joints) by_name[joint.name] = &joint;
+  for (const Joint& joint : description.joints) {
+    const Joint* driver = &joint;
+    for (std::size_t steps = 0; driver->mimic; ++steps) {
+      const auto found = by_name.find(driver->mimic->joint);
+      if (found == by_name.end() || found->second->type == JointType::fixed) {
+        fail(file, "joint '" + driver->name + "': mimics '" + driver->mimic->joint + "', which is not a moving joint");
+      }
+      if (steps > description.joints.size()) fail(file, "joint '" + joint.name + "': mimics itself");
+      driver = found->second;
+    }
+  }
+}
+
+}  // namespace
+
+RobotDescription read_urdf(const std::filesystem::path& file, const UrdfSettings& settings) {
+  const std::string text = read_text(file);
+  const Outline outline = outline_of(file, text);
+  const urdf::ModelInterfaceSharedPtr model = parse(file, text);
+
+  RobotDescription description;
+  description.name = model->getName();
+  std::map<std::string, std::vector<std::string>> children;
+  for (const std::string& joint : outline.joints) children[model->joints_.at(joint)->parent_link_name].push_back(joint);
+  append_tree(*model, children, file, description, model->getRoot()->name);
+  if (description.links.size() != model->links_.size()) {
+    std::set<std::string> loose;
+    for (const auto& [name, link] : model->links_) loose.insert(name);
+    for (const Link& link : description.links) loose.erase(link.name);
+    fail(file, "link '" + *loose.begin() + "' is part of a loop: a tree is needed");
+  }
+  check_mimics(description, file);
+
+  MeshCache cache;
+  for (Link& link : description.links) {
+    if (settings.without_geometry.contains(link.name)) continue;
+    const urdf::Link& source = *model->links_.at(link.name);
+    const std::string element = "link '" + link.name + "'";
+    link.collision = settings.geometry == LinkGeometry::visual
+                         ? geometry_of(source.visual_array, file, settings, element, cache)
+                         : geometry_of(source.collision_array, file, settings, element, cache);
+  }
+  for (const auto& [tag, count] : outline.ignored) {
+    description.notes.push_back(file.filename().string() + ": <" + tag + "> ignored (" + std::to_string(count) + ")");
+  }
+  return description;
+}
+
+}  // namespace opponens::robot

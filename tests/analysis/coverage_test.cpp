@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/coverage.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+#include <boost/math/distributions/binomial.hpp>
+
+#include "analysis/statistics.hpp"
+#include "tests/analysis/support.hpp"
+
+namespace opponens::analysis {
+namespace {
+
+constexpr double kFalseAlarm = 1e-4;
+
+/// Whether a count is what Binomial(trials, p) gives, two-sided exact at the false-alarm rate.
+bool accepted(double count, int trials, double p) {
+  const boost::math::binomial distribution(trials, p);
+  return boost::math::cdf(distribution, count) >= 0.5 * kFalseAlarm &&
+         boost::math::cdf(boost::math::complement(distribution, count - 1)) >= 0.5 * kFalseAlarm;
+}
+
+double covered(const Eigen::MatrixXd& samples, const Eigen::VectorXd& half_width) {
+  double count = 0;
+  for (Eigen::Index i = 0; i < samples.rows(); ++i) {
+    count += (samples.row(i).transpose().array().abs() <= half_width.array()).all() ? 1 : 0;
+  }
+  return count;
+}
+
+TEST(BoxCoverage, TheNthRootKeepsThePromiseAndThePrintedOneDoesNot) {
+  // Null: 20,000 independent standard normals in 16 dimensions fall into the box with probability 0.95, so the count
+  // is Binomial(20000, 0.95). Fixed seed.
+  constexpr int kSamples = 20000;
+  Rng rng = stream(20, "box coverage");
+  const Eigen::MatrixXd samples = test::normal_matrix(kSamples, 16, rng);
+  const Eigen::VectorXd ones = Eigen::VectorXd::Ones(16);
+  const double right = covered(samples, box_half_width(ones, 0.05, BoxRoot::n, 16, 16));
+  const double printed = covered(samples, box_half_width(ones, 0.05, BoxRoot::literal, 16, 16));
+  RecordProperty("coverage_root_n", std::to_string(right / kSamples));
+  RecordProperty("coverage_literal", std::to_string(printed / kSamples));
+  EXPECT_TRUE(accepted(right, kSamples, 0.95)) << right / kSamples;
+  EXPECT_FALSE(accepted(printed, kSamples, 0.95)) << printed / kSamples;
+  EXPECT_TRUE(accepted(printed, kSamples, std::pow(0.95, 8.0))) << "sqrt(0.95)^16 = 66.3 %";
+}
+
+std::vector<Cluster> clusters_of(const std::vector<Eigen::MatrixXd>& samples) {
+  std::vector<Cluster> clusters;
+  for (const Eigen::MatrixXd& part : samples) clusters.push_back({moments(part), {part}, {1.0}});
+  return clusters;
+}
+
+CoverageSettings settings_for(int n, double resolution = 0.0) {
+  CoverageSettings settings;
+  settings.resolution = Eigen::VectorXd::Constant(n, resolution);
+  return settings;
+}
+
+TEST(BoxCoverage, HeldOutOfAKnownDistribution) {
+  // 100 clusters of 200 independent normals: each cluster's samples are new to the box of the others, so the held-out
+  // count is Binomial(20000, 0.95) up to the box's own error (19,800 samples; < 0.1 %, allowed for by n = 5).
+  Rng rng = stream(21, "held out");
+  std::vector<Eigen::MatrixXd> parts;
+  const Eigen::MatrixXd mixing = test::normal_matrix(5, 5, rng);
+  for (int c = 0; c < 100; ++c) parts.push_back(test::normal_matrix(200, 5, rng) * mixing);
+  Rng bootstrap = stream(21, "bootstrap");
+  const BoxCoverage found = box_coverage(clusters_of(parts), settings_for(5), bootstrap);
+  EXPECT_TRUE(accepted(std::round(*found.full.held_out * 20000), 20000, 0.95)) << *found.full.held_out;
+  EXPECT_NEAR(found.full.nominal, 0.95, 1e-12);
+  EXPECT_LT(found.full.interval->low, 0.95);
+  EXPECT_GT(found.full.interval->high, 0.95);
+  // The first k coordinates have their own nominal value, between 0.95 and 1.
+  EXPECT_TRUE(accepted(std::round(*found.kept.held_out * 20000), 20000, found.kept.nominal)) << *found.kept.held_out;
+  EXPECT_GT(found.kept.nominal, 0.95);
+}
+
+TEST(BoxCoverage, HeldOutSeesWhatInSampleHides) {
+  // Few recordings that each sit somewhere else: the box of the others does not hold the one left out.
+  Rng rng = stream(22, "apart");
+  std::vector<Eigen::MatrixXd> parts;
+  for (int c = 0; c < 6; ++c) {
+    const Eigen::RowVectorXd centre = test::normal_matrix(1, 8, rng);
+    parts.push_back((0.1 * test::normal_matrix(50, 8, rng)).rowwise() + centre);
+  }
+  Rng bootstrap = stream(22, "bootstrap");
+  const BoxCoverage found = box_coverage(clusters_of(parts), settings_for(8), bootstrap);
+  EXPECT_GT(found.full.in_sample, 0.95);
+  EXPECT_LT(*found.full.held_out, 0.5);
+}
+
+TEST(BoxCoverage, ZeroWidthAxesUseTheSensorResolution) {
+  Rng rng = stream(23, "flat");
+  Eigen::MatrixXd flat = test::normal_matrix(400, 4, rng);
+  flat.col(2) = flat.col(0);
+  flat.col(3).setConstant(0.25);
+  std::vector<Eigen::MatrixXd> parts{flat.topRows(200), flat.bottomRows(200)};
+  Rng bootstrap = stream(23, "bootstrap");
+  const BoxCoverage found = box_coverage(clusters_of(parts), settings_for(4, 1e-3), bootstrap);
+  EXPECT_GT(*found.full.held_out, 0.85);  // without a tolerance the rounding of two flat axes would exclude most
+  EXPECT_NEAR(found.full.nominal, 0.95, 1e-12);
+  parts[1].col(3).array() += 0.01;  // ten resolutions off
+  Rng again = stream(23, "bootstrap");
+  EXPECT_EQ(*box_coverage(clusters_of(parts), settings_for(4, 1e-3), again).full.held_out, 0.0);
+}
+
+TEST(BoxCoverage, OneClusterHasNoHeldOut) {
+  Rng rng = stream(24, "one");
+  const BoxCoverage found = box_coverage(clusters_of({test::normal_matrix(100, 3, rng)}), settings_for(3), rng);
+  EXPECT_FALSE(found.full.held_out);
+  EXPECT_FALSE(found.full.interval);
+  EXPECT_THROW(box_coverage({}, settings_for(3), rng), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace opponens::analysis

@@ -1,0 +1,168 @@
+# SPDX-FileCopyrightText: 2026 The opponens authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Bad input gives one clear line and the right exit code, and leaves the store as it was."""
+import pathlib
+import shutil
+import tempfile
+import unittest
+
+from support import SOURCE, must, run, snapshot
+
+HEADER = "t_s," + ",".join(
+    [f"T_{joint}" for joint in ("ROT", "MCP", "IP", "ABD")]
+    + [f"{finger}_{joint}" for finger in "IMRL" for joint in ("MCP", "PIP", "DIP", "ABD")]
+    + ["PALM_ARCH", "W_PITCH", "W_YAW"])
+
+
+def rows(count=200, rate=100.0):
+    return [",".join([f"{i / rate:.3f}"] + [f"{0.005 * i * (1 + j % 3):.4f}" for j in range(23)]) for i in range(count)]
+
+
+class BadInput(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.root = pathlib.Path(cls.folder.name)
+        cls.store = cls.root / "store"
+        must("simulate", "--store", cls.store, "--repetitions", 2)
+        must("retarget", "--store", cls.store)
+        must("analyze", "--store", cls.store)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def refuse(self, code, words, *arguments, store=None):
+        store = store or self.store
+        before = snapshot(store)
+        got, out, err = run(*arguments)
+        self.assertEqual(got, code, out + err)
+        self.assertEqual(out, "")
+        self.assertEqual(len(err.strip().splitlines()), 1, err)
+        for word in words:
+            self.assertIn(word, err)
+        self.assertEqual(snapshot(store), before)
+
+    def recording(self, lines):
+        """A data set of one recording in the form of west_r2g."""
+        folder = pathlib.Path(tempfile.mkdtemp(dir=self.root))
+        (folder / "csv").mkdir()
+        (folder / "csv" / "a.csv").write_text("\n".join(lines) + ("\n" if lines else ""))
+        (folder / "index.csv").write_text("file,subject,object,repetition,samples,duration_s\na.csv,1,cup,1,200,2\n")
+        return folder
+
+    def ingest(self, words, lines):
+        self.refuse(2, ["a.csv", *words], "ingest", self.recording(lines), "--store", self.store, "--source",
+                    "models/sources/west_r2g.yaml")
+
+    def test_a_good_recording_is_taken(self):
+        store = self.root / "good"
+        must("ingest", self.recording([HEADER, *rows()]), "--store", store, "--source", "models/sources/west_r2g.yaml")
+        self.assertEqual(len(snapshot(store)), 1)
+
+    def test_recordings(self):
+        self.ingest([], [])
+        self.ingest([], [HEADER])
+        text = rows()
+        text[50] = text[50].replace("0.2500", "nan", 1)
+        self.ingest([":52"], [HEADER, *text])
+        text = rows()
+        text[50] = text[50].rsplit(",", 1)[0]
+        self.ingest([":52"], [HEADER, *text])
+        text = rows()
+        text[50] = text[50].replace("0.500", "0.490", 1)
+        self.ingest([":52", "0.49"], [HEADER, *text])
+        text = rows()
+        text[50] = text[50].replace("0.2500", "many", 1)
+        self.ingest([":52", "many"], [HEADER, *text])
+        self.ingest(["L_YAWN"], [HEADER.replace("W_YAW", "L_YAWN"), *rows()])
+
+    def test_missing_files(self):
+        self.refuse(2, ["nowhere"], "ingest", self.root / "nowhere", "--store", self.store, "--source",
+                    "models/sources/west_r2g.yaml")
+        self.refuse(2, ["nowhere.yaml"], "ingest", self.root, "--store", self.store, "--source", "nowhere.yaml")
+        self.refuse(2, ["nowhere.yaml"], "retarget", "--store", self.store, "--hand", "nowhere.yaml")
+        self.refuse(2, ["nowhere.yaml"], "grasp", "--store", self.store, "--robot", "nowhere.yaml")
+        self.refuse(2, ["nowhere.yaml"], "grasp", "--store", self.store, "--scene", "nowhere.yaml")
+        self.refuse(2, ["nowhere"], "analyze", "--store", self.root / "nowhere", store=self.root / "nowhere")
+        self.assertFalse((self.root / "nowhere").exists())
+
+    def broken_hand(self, replace):
+        folder = pathlib.Path(tempfile.mkdtemp(dir=self.root))
+        for file in (SOURCE / "models/ur5_allegro").iterdir():
+            if file.is_file():
+                shutil.copy(file, folder)
+        for name, old, new in replace:
+            file = folder / name
+            text = file.read_text()
+            self.assertIn(old, text)
+            file.write_text(text.replace(old, new, 1))
+        return folder / "allegro_right.yaml"
+
+    def test_robots(self):
+        hand = self.broken_hand([("allegro_right.yaml", "joint_5.0", "joint_99.0")])
+        self.refuse(2, ["allegro_right.yaml", "joint_99.0"], "retarget", "--store", self.store, "--hand", hand)
+        hand = self.broken_hand([("allegro_right.urdf", 'type="revolute"', 'type="floating"')])
+        self.refuse(2, ["allegro_right.urdf", "floating"], "retarget", "--store", self.store, "--hand", hand)
+        hand = self.broken_hand([("allegro_right.urdf", 'type="revolute"', 'type="wobbly"')])
+        self.refuse(2, ["allegro_right.urdf", "wobbly"], "retarget", "--store", self.store, "--hand", hand)
+        hand = self.broken_hand([("allegro_right.urdf", "<geometry>", '<geometry><mesh filename="gone.stl"/></geometry>'
+                                  '</collision><collision><geometry>')])
+        self.refuse(2, ["gone.stl"], "retarget", "--store", self.store, "--hand", hand)
+
+    def test_scenes(self):
+        scene = self.root / "scene.yaml"
+        text = (SOURCE / "models/scenes/cylinder_shelf.yaml").read_text()
+        scene.write_text(text + "\nsurprise: 1\n")
+        self.refuse(2, ["scene.yaml", "surprise"], "grasp", "--store", self.store, "--scene", scene)
+        self.refuse(2, ["teapot"], "grasp", "--store", self.store, "--object", "teapot")
+
+    def test_wrong_use(self):
+        for arguments in (["fly"], ["plan"], ["analyze", "--store", str(self.store), "--alpha", "2"],
+                          ["plan", "--store", str(self.store), "--planner", "magic"]):
+            code, out, err = run(*arguments)
+            self.assertEqual(code, 2, arguments)
+            self.assertEqual(out, "")
+            self.assertTrue(err)
+        self.refuse(2, ["nobody"], "grasp", "--store", self.store, "--group", "nobody")
+        self.refuse(2, ["opponens grasp"], "plan", "--store", self.store)
+
+    def test_order_of_the_stages_is_told(self):
+        store = self.root / "young"
+        must("simulate", "--store", store, "--repetitions", 2)
+        self.refuse(2, ["opponens analyze"], "grasp", "--store", store, store=store)
+
+    def test_unknown_group_label_is_told(self):
+        self.refuse(2, ["shoe_size"], "analyze", "--store", self.store, "--group-by", "shoe_size")
+
+    def test_read_only_directory(self):
+        # Root may write anywhere, so the folder lies on a read-only system: below /proc nothing can be made.
+        self.refuse(2, ["/proc/opponens"], "simulate", "--store", "/proc/opponens", store="/proc/opponens")
+
+    def damaged(self, change):
+        store = pathlib.Path(tempfile.mkdtemp(dir=self.root)) / "store"
+        shutil.copytree(self.store, store)
+        file = sorted(store.glob("*.h5"))[-1]
+        data = bytearray(file.read_bytes())
+        file.chmod(0o644)
+        file.write_bytes(change(data))
+        return store
+
+    def test_damaged_store(self):
+        def flip(data):
+            data[len(data) // 2] ^= 4
+            return bytes(data)
+
+        for change in (flip, lambda data: bytes(data[: len(data) // 3]), lambda data: b""):
+            store = self.damaged(change)
+            for command in (["grasp"], ["analyze"], ["plan"], ["report", "--out", self.root / "r.html"], ["show"]):
+                self.refuse(3, [".h5"], command[0], "--store", store, *command[1:], store=store)
+
+    def test_verify_finds_damage(self):
+        store = self.damaged(lambda data: bytes(data[:100]))
+        code, out, err = run("verify", "--store", store)
+        self.assertEqual(code, 3, out + err)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,149 @@
+# SPDX-FileCopyrightText: 2026 The opponens authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The whole flow through the command line, small: twice, byte-identical, whatever the thread count; the documents of
+docs/cli.md; the chain of `why`; h5py reads what was stored."""
+import json
+import math
+import pathlib
+import tempfile
+import unittest
+from html.parser import HTMLParser
+
+import h5py
+
+from support import must, run, snapshot, without_run_log
+
+SCENE = "models/scenes/cylinder_shelf.yaml"
+
+
+def flow(folder, threads, seed=3):
+    """Runs every stage; returns the documents by command."""
+    store = folder / "store"
+    documents = {
+        "simulate": must("simulate", "--store", store, "--repetitions", 3, "--seed", seed),
+        "retarget": must("retarget", "--store", store),
+        "analyze": must("analyze", "--store", store, "--seed", seed),
+    }
+    world = ("--store", store, "--scene", SCENE, "--seed", seed, "--threads", threads)
+    documents["grasp"] = must("grasp", *world, "--count", 2, "--max-trials", 400)
+    documents["plan"] = must("plan", *world, "--runs", 2)
+    documents["verify"] = must("verify", "--store", store)
+    must("report", "--store", store, "--out", folder / "report.html")
+    return documents
+
+
+class Pipeline(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        root = pathlib.Path(cls.folder.name)
+        cls.one, cls.two = root / "one", root / "two"
+        cls.documents = flow(cls.one, 1)
+        cls.again = flow(cls.two, 2)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def test_equal_seeds_give_equal_bytes_at_any_thread_count(self):
+        first, second = snapshot(self.one / "store"), snapshot(self.two / "store")
+        self.assertGreater(len(first), 4)
+        self.assertEqual(first, second)
+        pages = [without_run_log((folder / "report.html").read_text()) for folder in (self.one, self.two)]
+        self.assertEqual(*pages)
+
+    def test_another_seed_gives_other_bytes(self):
+        with tempfile.TemporaryDirectory() as folder:
+            store = pathlib.Path(folder) / "store"
+            must("simulate", "--store", store, "--repetitions", 3, "--seed", 4)
+            self.assertFalse(set(snapshot(store).values()) & set(snapshot(self.one / "store").values()))
+
+    def test_documents_hold_the_contract(self):
+        groups = self.documents["analyze"]["groups"]
+        self.assertEqual([group["name"] for group in groups], ["pre-grasp", "1", "2", "3", "4"])
+        for group in groups:
+            self.assertLessEqual({"name", "phase", "samples", "dof_effective", "dropped_channels", "cumulative_variance",
+                                  "k", "half_width", "coverage"}, set(group))
+            self.assertLessEqual({"in_sample", "held_out", "interval", "nominal"}, set(group["coverage"]))
+            self.assertEqual(len(group["half_width"]), group["k"])
+            self.assertAlmostEqual(group["cumulative_variance"][-1], 1.0, places=12)
+        for transition in self.documents["analyze"]["transitions"]:
+            self.assertLessEqual({"demonstration", "index", "time_s", "fraction", "method"}, set(transition))
+        grasp = self.documents["grasp"]
+        self.assertLessEqual({"grasps", "trials", "evaluations", "cpu_seconds", "rejected"}, set(grasp))
+        for one in grasp["grasps"]:
+            self.assertTrue(one["force_closure"])
+            self.assertGreater(one["epsilon"], 0.0)
+            self.assertIsNone(one["certified"])
+            self.assertEqual(len(one["X_OH"]), 16)
+            self.assertEqual(set(one["joints"]), set(one["pregrasp"]))
+            for contact in one["contacts"]:
+                self.assertAlmostEqual(math.hypot(*contact["n"]), 1.0, places=9)
+        plan = self.documents["plan"]
+        self.assertEqual([one["seed"] for one in plan["runs"]], [3, 4])
+        for one in plan["runs"]:
+            self.assertEqual(one["status"], "solved")
+            self.assertTrue(0.0 < one["human_likeness"] <= 100.0)
+            self.assertIn("simulated", one["human_likeness_reference"])
+            self.assertGreater(one["collision_checks"], 0)
+        times = plan["path"]["times"]
+        self.assertTrue(all(a < b for a, b in zip(times, times[1:])))
+        self.assertEqual(len(plan["path"]["waypoints"]), len(times))
+        verify = self.documents["verify"]
+        self.assertEqual(verify["failed"], [])
+        self.assertGreater(verify["checked"], 4)
+        self.assertGreater(verify["worst_clearance_m"], 0.0)
+
+    def test_both_planners_answer(self):
+        document = must("plan", "--store", self.two / "store", "--scene", SCENE, "--planner", "rrtconnect")
+        self.assertEqual(document["runs"][0]["status"], "solved")
+        self.assertEqual(must("verify", "--store", self.two / "store")["failed"], [])
+
+    def test_why_leads_back_to_the_recordings(self):
+        path = self.documents["plan"]["ids"][0]
+        chain = must("why", path, "--store", self.one / "store")["chain"]
+        kinds = [item["kind"] for item in chain]
+        self.assertEqual(kinds[0], "path")
+        for kind in ("grasp", "synergy_set", "hand_demonstration", "demonstration"):
+            self.assertIn(kind, kinds)
+        self.assertEqual(kinds.count("demonstration"), kinds.count("hand_demonstration"))
+
+    def test_h5py_reads_the_store(self):
+        kinds = set()
+        for file in (self.one / "store").glob("*.h5"):
+            with h5py.File(file, "r") as handle:
+                handle.visititems(lambda name, item: kinds.add(item.attrs["kind"]) if "kind" in item.attrs else None)
+        kinds = {kind.decode() if isinstance(kind, bytes) else str(kind) for kind in kinds}
+        self.assertLessEqual({"demonstration", "hand_demonstration", "synergy_set", "grasp", "path"}, kinds)
+
+    def test_the_report_is_whole(self):
+        page = (self.one / "report.html").read_text()
+        stack = []
+
+        class Balance(HTMLParser):
+            VOID = {"meta", "br", "hr", "img", "link", "input", "line", "circle", "rect", "polyline", "path", "use"}
+
+            def handle_starttag(self, tag, attrs):
+                if tag not in self.VOID:
+                    stack.append(tag)
+
+            def handle_endtag(self, tag):
+                if tag not in self.VOID:
+                    assert stack.pop() == tag, tag
+
+        Balance().feed(page)
+        self.assertEqual(stack, [])
+        self.assertIn("SIMULATED", page.upper())
+        for word in ("nan", "inf", "null"):
+            self.assertNotIn(f">{word}<", page)
+        self.assertNotIn("http://", page.replace("http://www.w3.org", ""))
+
+    def test_progress_and_text_stay_off_a_json_stdout(self):
+        code, out, err = run("show", "--store", self.one / "store", "--json")
+        self.assertEqual(code, 0)
+        self.assertEqual(err, "")
+        json.loads(out)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,118 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstring>
+
+#include "core/require.hpp"
+#include "storage/batch_file.hpp"
+#include "tests/storage/support.hpp"
+
+namespace opponens::storage::test {
+namespace {
+
+struct DamagedStore {
+  TemporaryDirectory directory;
+  fs::path path = directory / "store";
+  std::vector<Record> records{small_record(1), small_record(2)};
+  std::vector<std::string> ids;
+  std::string file;
+  std::string bytes;
+
+  DamagedStore() {
+    Store store(path, true);
+    ids = store.commit(records);
+    file = only_batch(path);
+    bytes = slurp(path / file);
+  }
+
+  /// Replaces the file's bytes and tells how many reads were refused; what is not refused must be right.
+  int refusals(const std::string& damaged) const {
+    spill(path / file, damaged);
+    int refused = 0;
+    const Store store(path, false);
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      try {
+        EXPECT_TRUE(same(store.read(ids[i]), records[i])) << "damage was returned as good";
+      } catch (const StorageError& error) {
+        EXPECT_TRUE(contains(error.what(), {file}));
+        ++refused;
+      }
+    }
+    return refused;
+  }
+};
+
+TEST(Damage, EveryFlippedBitIsFound) {
+  const DamagedStore store;
+  Rng rng = stream(5, "flip");
+  int flips = 0;
+  for (std::size_t at = 0; at < store.bytes.size(); at += 7) {
+    std::string damaged = store.bytes;
+    damaged[at] = static_cast<char>(damaged[at] ^ (1 << rng.index(8)));
+    if (flips++ % 2 == 0) fs::remove(store.path / "index.json");
+    EXPECT_EQ(store.refusals(damaged), 2) << "byte " << at;
+  }
+  EXPECT_GT(flips, 500);
+  EXPECT_EQ(store.refusals(store.bytes), 0);
+}
+
+TEST(Damage, EveryTruncationIsFound) {
+  const DamagedStore store;
+  for (std::size_t size = 0; size < store.bytes.size(); size += 61) {
+    EXPECT_EQ(store.refusals(store.bytes.substr(0, size)), 2) << size;
+  }
+  EXPECT_EQ(store.refusals(store.bytes + std::string(1, '\0')), 2);
+}
+
+TEST(Damage, ContentHashFindsWhatAMatchingFileNameWouldHide) {
+  const DamagedStore store;
+  const double value = std::get<Eigen::VectorXd>(store.records[1].fields.at("values"))[7];
+  std::string needle(sizeof value, '\0');
+  std::memcpy(needle.data(), &value, sizeof value);
+  const std::size_t at = store.bytes.find(needle);
+  ASSERT_NE(at, std::string::npos);
+  std::string damaged = store.bytes;
+  damaged[at] = static_cast<char>(damaged[at] ^ 1);
+  fs::remove(store.path / store.file);
+  fs::remove(store.path / "index.json");
+  const std::string name = batch_file_name(0, std::as_bytes(std::span(damaged)));
+  spill(store.path / name, damaged);
+  const Store opened(store.path, false);
+  EXPECT_TRUE(same(opened.read(store.ids[0]), store.records[0]));
+  EXPECT_TRUE(contains(message_of<StorageError>([&] { opened.read(store.ids[1]); }),
+                       {name, "/objects/000001", "record 2", "content hash"}));
+  ASSERT_EQ(opened.check().size(), 1U);
+}
+
+TEST(Damage, IsReportedAndStopsWritingButWhatIsIntactCanBeRead) {
+  const DamagedStore store;
+  const std::string intact = Store(store.path, false).commit({small_record(3)}).front();
+  spill(store.path / store.file, store.bytes.substr(0, 1000));
+  fs::remove(store.path / "index.json");
+  Store opened(store.path, false);
+  EXPECT_TRUE(contains(message_of<StorageError>([&] { opened.list(); }), {store.file, "truncated or damaged"}));
+  EXPECT_TRUE(contains(message_of<StorageError>([&] { opened.commit({small_record(4)}); }), {store.file}));
+  EXPECT_TRUE(contains(message_of<StorageError>([&] { opened.read(store.ids[0]); }), {store.file}));
+  EXPECT_TRUE(same(opened.read(intact), small_record(3)));
+  EXPECT_EQ(opened.check().size(), 1U);
+}
+
+TEST(Damage, AMissingFileIsNotForgotten) {
+  const DamagedStore store;
+  fs::remove(store.path / store.file);
+  const Store opened(store.path, false);
+  EXPECT_TRUE(contains(message_of<StorageError>([&] { opened.list(); }), {store.file, "missing", "2 object"}));
+  ASSERT_EQ(opened.check().size(), 1U);
+}
+
+TEST(Damage, FilesOfOthersAreLeftAlone) {
+  const DamagedStore store;
+  spill(store.path / "report.html", "<html>");
+  spill(store.path / "foreign.h5", "not ours");
+  const Store opened(store.path, false);
+  EXPECT_EQ(opened.list().size(), 2U);
+  ASSERT_EQ(opened.check().size(), 1U);
+  EXPECT_TRUE(contains(opened.check().front(), {"foreign.h5", "not named like a batch"}));
+}
+
+}  // namespace
+}  // namespace opponens::storage::test
