@@ -120,7 +120,7 @@ Result<TransitionCurves> transition_curves(const Demonstration& demonstration, c
   const EffectiveSubspace subspace =
       effective_subspace(whole.covariance, Eigen::VectorXd::Constant(n, settings.resolution));
   if (subspace.kept.empty()) {
-    return failure(FailureCode::degenerate, "recording " + demonstration.id + ": no channel moves more than half the " +
+    return failure(FailureCode::degenerate, "recording " + demonstration.id + ": no channel moves more than the " +
                                                 "sensor resolution of " + std::to_string(settings.resolution) + " rad");
   }
   const auto samples = static_cast<int>(demonstration.q_h.rows());

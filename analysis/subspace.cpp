@@ -11,6 +11,7 @@ namespace opponens::analysis {
 namespace {
 
 constexpr double kRoundingShare = 1e-12;
+constexpr double kConstantShare = 1e-20;
 
 }  // namespace
 
@@ -21,7 +22,8 @@ EffectiveSubspace effective_subspace(const Eigen::Ref<const Eigen::MatrixXd>& co
   require(covariance.allFinite() && (resolution.array() >= 0.0).all(),
           "effective_subspace: covariance not finite or resolution negative");
   const Eigen::VectorXd variance = covariance.diagonal();
-  const Eigen::VectorXd floor = (0.25 * resolution.array().square()).max(kRoundingShare * variance.array()).max(1e-300);
+  const double smallest = std::max(kConstantShare * variance.maxCoeff(), 1e-300);
+  const Eigen::VectorXd floor = resolution.array().square().max(kRoundingShare * variance.array()).max(smallest);
   Eigen::MatrixXd factor = Eigen::MatrixXd::Zero(n, n);  // one column per taken channel
   Eigen::VectorXd remaining = variance;
   std::vector<bool> taken(static_cast<std::size_t>(n), false);

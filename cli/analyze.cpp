@@ -42,7 +42,8 @@ std::vector<Stored<Demonstration>> input_motions(const storage::Store& store, co
 /// Joint ranges for --space normalized: those of the hand that the motions were mapped to.
 analysis::JointRanges joint_ranges(const std::vector<Stored<Demonstration>>& motions) {
   const auto& record = motions.front().record;
-  if (record.kind != kHandMotion) throw InputError("--space normalized needs motions of a robot hand; run: opponens retarget");
+  if (record.kind != kHandMotion)
+    throw InputError("--space normalized needs motions of a robot hand; run: opponens retarget");
   const robot::RobotModel hand(robot::load_hand(find_file(parameters_of(record).at("hand"))));
   return {hand.lower(), hand.upper()};
 }
@@ -166,8 +167,8 @@ int analyze(const AnalyzeOptions& options, const Console& console) {
     return found.error().code == FailureCode::invalid_input ? kInvalid : kNoAnswer;
   }
   const Json result = analysis_json(*found, settings);
-  auto record = storage::encode(found->synergies, provenance("analyze", inputs, {}, parameters_json(options),
-                                                             options.common.seed));
+  auto record = storage::encode(found->synergies,
+                                provenance("analyze", inputs, {}, parameters_json(options), options.common.seed));
   record.fields["analysis"] = result.dump();
   log.finish(store.commit({record}));
   say_groups(console, *found);

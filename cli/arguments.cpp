@@ -106,7 +106,8 @@ void declare_analyze(CLI::App& app, AnalyzeOptions& options) {
   app.add_option("--phase", options.phase, "both: split each recording in two phases; none: all samples per group")
       ->check(CLI::IsMember({"both", "none"}))
       ->capture_default_str();
-  app.add_option("--input", options.input, "Which motions: hand (retargeted) or glove; default: hand when there are any")
+  app.add_option("--input", options.input,
+                 "Which motions: hand (retargeted) or glove; default: hand when there are any")
       ->check(CLI::IsMember({"hand", "glove"}));
 }
 
@@ -116,7 +117,9 @@ void declare_grasp(CLI::App& app, GraspOptions& options) {
   add_seed(app, options.common.seed);
   add_threads(app, options.common.threads);
   app.add_option("--group", options.group, "Synergy group, or all")->capture_default_str();
-  app.add_option("--count", options.count, "Grasps to keep per group")->check(CLI::Range(1, 1000))->capture_default_str();
+  app.add_option("--count", options.count, "Grasps to keep per group")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
   app.add_option("--max-trials", options.max_trials, "Trials per group")
       ->check(CLI::Range(1, 100000000))
       ->capture_default_str();
@@ -139,7 +142,9 @@ void declare_plan(CLI::App& app, PlanOptions& options) {
   app.add_option("--max-checks", options.max_checks, "Configurations checked per run; 0 = no limit")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  app.add_option("--step", options.step, "Longest step of a tree, rad")->check(CLI::Range(1e-3, 10.0))->capture_default_str();
+  app.add_option("--step", options.step, "Longest step of a tree, rad")
+      ->check(CLI::Range(1e-3, 10.0))
+      ->capture_default_str();
   app.add_option("--resolution", options.resolution, "Spacing of checked configurations, rad")
       ->check(CLI::Range(1e-4, 1.0))
       ->capture_default_str();
@@ -151,13 +156,12 @@ void declare_show(CLI::App& app, ShowOptions& options) {
 }
 
 void add_commands(Builder& add) {
-  add.command<DemoOptions>("demo", "The whole flow on built-in simulated demonstrations", demo,
-                           [](CLI::App& app, DemoOptions& options) {
-                             app.add_option("--out", options.out, "Folder for the store and the report")
-                                 ->capture_default_str();
-                             add_seed(app, options.seed);
-                             add_threads(app, options.threads);
-                           });
+  add.command<DemoOptions>(
+      "demo", "The whole flow on built-in simulated demonstrations", demo, [](CLI::App& app, DemoOptions& options) {
+        app.add_option("--out", options.out, "Folder for the store and the report")->capture_default_str();
+        add_seed(app, options.seed);
+        add_threads(app, options.threads);
+      });
   add.command<SimulateOptions>("simulate", "Make simulated human-hand recordings", simulate, declare_simulate);
   add.command<IngestOptions>("ingest", "Read recordings into a store", ingest, declare_ingest);
   add.command<RetargetOptions>("retarget", "Map glove recordings to a robot hand", retarget, declare_retarget);
@@ -186,8 +190,9 @@ Invocation parse_arguments(int argc, char** argv) {
   CLI::App app("opponens plans human-like grasping motions from recorded hand synergies.", "opponens");
   app.set_version_flag("--version", OPPONENS_VERSION);
   app.require_subcommand(1);
-  app.footer("Exit codes: 0 done; 1 no answer found; 2 wrong use or invalid input; 3 store damaged or newer;\n"
-             "130 interrupted (what was finished is kept). docs/cli.md is the full reference.");
+  app.footer(
+      "Exit codes: 0 done; 1 no answer found; 2 wrong use or invalid input; 3 store damaged or newer;\n"
+      "130 interrupted (what was finished is kept). docs/cli.md is the full reference.");
   Builder builder(app, invocation);
   add_commands(builder);
   try {

@@ -50,7 +50,7 @@ struct AnalyzeOptions {
   std::string group_by = "family";
   std::string space = "rad";
   std::string phase = "both";  ///< both | none
-  std::string input{};           ///< hand | glove; empty: hand when there is any
+  std::string input{};         ///< hand | glove; empty: hand when there is any
 };
 struct GraspOptions {
   Common common{};

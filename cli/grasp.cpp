@@ -52,7 +52,8 @@ class Reach {
 Json contacts_json(const std::vector<Contact>& contacts) {
   Json result = Json::array();
   for (const auto& contact : contacts) {
-    result.push_back({{"link", contact.link}, {"p", array(contact.p_OC)}, {"n", array(contact.n_O)}, {"mu", contact.mu}});
+    result.push_back(
+        {{"link", contact.link}, {"p", array(contact.p_OC)}, {"n", array(contact.n_O)}, {"mu", contact.mu}});
   }
   return result;
 }

@@ -21,9 +21,12 @@ Json summary_json(const storage::Summary& summary) {
                         {"recordings", channel.recordings},
                         {"stuck_recordings", channel.stuck_recordings}});
   }
-  return {{"recordings", summary.recordings},     {"samples", summary.samples},
-          {"duration_s", summary.duration},       {"lowest_rate_hz", number(summary.lowest_rate)},
-          {"highest_rate_hz", number(summary.highest_rate)}, {"channels", channels},
+  return {{"recordings", summary.recordings},
+          {"samples", summary.samples},
+          {"duration_s", summary.duration},
+          {"lowest_rate_hz", number(summary.lowest_rate)},
+          {"highest_rate_hz", number(summary.highest_rate)},
+          {"channels", channels},
           {"labels", summary.recordings_per_label}};
 }
 
@@ -48,9 +51,9 @@ void say_summary(const Console& console, const storage::Summary& summary) {
 
 storage::Record recording_record(const Demonstration& motion, const storage::FileReport& file,
                                  const std::filesystem::path& source) {
-  auto origin = provenance("ingest", {}, {source}, {{"rows", file.rows},
-                                                    {"trimmed_start_s", file.trimmed_start},
-                                                    {"trimmed_end_s", file.trimmed_end}}, 0);
+  auto origin = provenance(
+      "ingest", {}, {source},
+      {{"rows", file.rows}, {"trimmed_start_s", file.trimmed_start}, {"trimmed_end_s", file.trimmed_end}}, 0);
   origin.files[file.file.filename().string()] = file.sha256;
   return storage::encode(motion, origin);
 }

@@ -42,7 +42,8 @@ bool is_free_motion(const Demonstration& motion) {
   return kind != motion.labels.end() && kind->second == "free";
 }
 
-void count_motion(const Demonstration& motion, const std::string& group_by, std::map<std::string, RecordingGroup>& groups) {
+void count_motion(const Demonstration& motion, const std::string& group_by,
+                  std::map<std::string, RecordingGroup>& groups) {
   const std::string name = is_free_motion(motion) ? "free motions" : group_label(motion, group_by);
   const double seconds = motion.time(motion.time.size() - 1) - motion.time(0);
   auto& group = groups[name];
@@ -180,7 +181,8 @@ GraspPart grasp_part(const storage::Store& store, const std::string& synergies, 
     if (entry.inputs != std::vector<std::string>{synergies} || parameters_of(record).at("world") != world) continue;
     const Json summary = Json::parse(text_field(record, "summary"));
     part.trials += summary.at("trials").get<std::int64_t>();
-    for (const auto& [reason, count] : summary.at("rejected").items()) part.rejected[reason] += count.get<std::int64_t>();
+    for (const auto& [reason, count] : summary.at("rejected").items())
+      part.rejected[reason] += count.get<std::int64_t>();
   }
   return part;
 }
@@ -242,7 +244,8 @@ RunPart run_part(const storage::Store& store) {
   std::istringstream lines(part.log);
   for (std::string line; std::getline(lines, line);) {
     const Json run = Json::parse(line, nullptr, false);
-    if (run.is_object() && run.value("command", "") == "plan") part.planning_seconds = optional_number(run["wall_seconds"]);
+    if (run.is_object() && run.value("command", "") == "plan")
+      part.planning_seconds = optional_number(run["wall_seconds"]);
   }
   return part;
 }

@@ -11,8 +11,8 @@ namespace opponens::cli {
 /// share/opponens beside this program, or the source tree it was built from). Throws InputError when nowhere.
 std::filesystem::path find_file(const std::string& name);
 
-/// The name under which a found file is recorded: relative to the data folder when it lies inside, so that equal runs on
-/// two machines store equal bytes.
+/// The name under which a found file is recorded: relative to the data folder when it lies inside, so that equal runs
+/// on two machines store equal bytes.
 std::string recorded_name(const std::filesystem::path& file);
 
 /// SHA-256 (hex) of a file's bytes. Throws InputError when it cannot be read.

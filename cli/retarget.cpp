@@ -63,7 +63,8 @@ class HumanHands {
   const robot::RobotModel& of_length(double length) {
     const auto found = hands_.find(length);
     if (found != hands_.end()) return found->second;
-    return hands_.emplace(length, robot::RobotModel(robot::scaled(description_, length / kModelHandLength))).first->second;
+    return hands_.emplace(length, robot::RobotModel(robot::scaled(description_, length / kModelHandLength)))
+        .first->second;
   }
 
  private:
@@ -93,7 +94,8 @@ int retarget(const RetargetOptions& options, const Console& console) {
   storage::Store store(options.common.store, false);
   const RunLog log(store, "retarget", 1);
   const auto motions = recordings(store);
-  if (motions.empty()) throw InputError(store.directory().string() + ": no recordings; run: opponens simulate, or ingest");
+  if (motions.empty())
+    throw InputError(store.directory().string() + ": no recordings; run: opponens simulate, or ingest");
   const auto hand_file = find_file(options.hand);
   const auto human_file = find_file(kHumanHand);
   const robot::RobotModel hand(robot::load_hand(hand_file));
@@ -112,7 +114,8 @@ int retarget(const RetargetOptions& options, const Console& console) {
     const auto mapped = robot::retarget(motion.value, calibration, humans.of_length(length), hand, mapping, {});
     if (!mapped) throw InputError(motion.value.id + ": " + mapped.error().detail);
     const Json parameters = {{"hand", recorded_name(hand_file)}, {"mapping", options.mapping}, {"hand_length", length}};
-    records.push_back(motion_record(*mapped, provenance("retarget", {motion.id}, {hand_file, human_file}, parameters, 0)));
+    records.push_back(
+        motion_record(*mapped, provenance("retarget", {motion.id}, {hand_file, human_file}, parameters, 0)));
     const auto samples = static_cast<int>(motion.value.time.size());
     residuals.squares += mapped->tip_residual_rms * mapped->tip_residual_rms * samples;
     residuals.largest = std::max(residuals.largest, mapped->tip_residual_max);

@@ -20,9 +20,8 @@ int simulate(const SimulateOptions& options, const Console& console) {
 
   storage::Store store(options.common.store, true);
   const RunLog log(store, "simulate", 1);
-  const auto origin =
-      provenance("simulate", {}, {file}, {{"repetitions", options.repetitions}, {"rate", settings.rate}},
-                 options.common.seed);
+  const auto origin = provenance("simulate", {}, {file},
+                                 {{"repetitions", options.repetitions}, {"rate", settings.rate}}, options.common.seed);
   std::vector<storage::Record> records;
   Eigen::Index samples = 0;
   int grasps = 0;
@@ -35,8 +34,8 @@ int simulate(const SimulateOptions& options, const Console& console) {
   const auto ids = store.commit(records);
   log.finish(ids);
   const auto free = motions.size() - static_cast<std::size_t>(grasps);
-  console.say("simulated " + std::to_string(grasps) + " grasping movements (" + std::to_string(samples) +
-              " samples, " + std::to_string(model.types.size()) + " grasp types) and " + std::to_string(free) +
+  console.say("simulated " + std::to_string(grasps) + " grasping movements (" + std::to_string(samples) + " samples, " +
+              std::to_string(model.types.size()) + " grasp types) and " + std::to_string(free) +
               " free finger motions. They say nothing about humans.");
   Json result = document("simulate");
   result.update({{"recordings", grasps}, {"samples", samples}, {"free_recordings", free}, {"ids", ids}});

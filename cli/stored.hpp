@@ -18,11 +18,11 @@
 namespace opponens::cli {
 
 // Kinds of stored objects; the library's codecs know the types, these names say what an object is in the flow.
-inline constexpr const char* kRecording = "demonstration";       ///< a glove recording
-inline constexpr const char* kHandMotion = "hand_demonstration"; ///< the same, mapped to a robot hand
+inline constexpr const char* kRecording = "demonstration";        ///< a glove recording
+inline constexpr const char* kHandMotion = "hand_demonstration";  ///< the same, mapped to a robot hand
 inline constexpr const char* kSynergySet = "synergy_set";
 inline constexpr const char* kGrasp = "grasp";
-inline constexpr const char* kGraspSearch = "grasp_search";      ///< trials and rejections of one group's search
+inline constexpr const char* kGraspSearch = "grasp_search";  ///< trials and rejections of one group's search
 inline constexpr const char* kPath = "path";
 inline constexpr const char* kVerdicts = "verification";
 

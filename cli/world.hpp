@@ -30,7 +30,8 @@ NamedWorld load_world(const std::string& robot_file, const std::string& scene_fi
 /// Throws InputError unless the synergies are about this hand's joints, in its order.
 void require_same_joints(const SynergySet& synergies, const robot::RobotModel& hand);
 
-/// The scene's start configuration in the robot's joint order. Throws InputError when it has none or a joint is missing.
+/// The scene's start configuration in the robot's joint order. Throws InputError when it has none or a joint is
+/// missing.
 Eigen::VectorXd start_configuration(const robot::RobotModel& robot, const robot::Scene& scene);
 
 }  // namespace opponens::cli

@@ -12,10 +12,10 @@
 namespace opponens {
 
 struct Contact {
-  std::string link;       ///< hand link that touches
-  Eigen::Vector3d p_OC;   ///< m
-  Eigen::Vector3d n_O;    ///< unit, pointing into the object
-  double mu = 0.5;        ///< friction coefficient
+  std::string link;      ///< hand link that touches
+  Eigen::Vector3d p_OC;  ///< m
+  Eigen::Vector3d n_O;   ///< unit, pointing into the object
+  double mu = 0.5;       ///< friction coefficient
 };
 
 enum class ContactModel { frictionless, point_with_friction, soft_finger };
@@ -31,18 +31,18 @@ enum class ClosureState {
 struct QualityConvention {
   ContactModel model = ContactModel::point_with_friction;
   double mu = 0.5;
-  int edges = 8;                     ///< cone edges per contact
+  int edges = 8;  ///< cone edges per contact
   ForceUnit unit = ForceUnit::normal;
   WrenchNorm norm = WrenchNorm::l1;
-  double rho = 1.0;                  ///< m, torque is divided by it
-  double torsion_radius = 0.0;       ///< m, soft finger only: the torque semi-axis of the friction ellipsoid
+  double rho = 1.0;             ///< m, torque is divided by it
+  double torsion_radius = 0.0;  ///< m, soft finger only: the torque semi-axis of the friction ellipsoid
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< m, in O: the point torques are taken about
 };
 
 struct GraspQuality {
   ClosureState state = ClosureState::rank_deficient;
-  std::optional<double> epsilon;     ///< radius of the largest origin-centred ball in the wrench hull; negative: minus the
-                                     ///< distance of the origin to the hull; nullopt when the set is rank deficient
+  std::optional<double> epsilon;  ///< radius of the largest origin-centred ball in the wrench hull; negative: minus the
+                                  ///< distance of the origin to the hull; nullopt when the set is rank deficient
   std::optional<double> min_weight;  ///< l*: max l with W a = 0, 1'a = 1, a >= l; nullopt when W a = 0 has no solution
   std::optional<double> volume;      ///< of the wrench hull; nullopt when not computed
   Eigen::Matrix<double, 6, 1> direction = Eigen::Matrix<double, 6, 1>::Zero();  ///< facet normal that decides epsilon
@@ -59,15 +59,15 @@ struct ArmSolution {
 /// A grasp of a given object along the synergies of a group. n hand joints, k synergies, m contacts.
 struct Grasp {
   std::string group;
-  Eigen::VectorXd coefficients;        ///< [k] synergy coordinates c, scaled units
-  Eigen::VectorXd slack;               ///< [n] rad: q_grasp - scale .* (center + axes c)
-  Eigen::VectorXd q_grasp;             ///< [n] rad, contacts touching
-  Eigen::VectorXd q_pregrasp;          ///< [n] rad, fingers opened along the synergies
+  Eigen::VectorXd coefficients;                                     ///< [k] synergy coordinates c, scaled units
+  Eigen::VectorXd slack;                                            ///< [n] rad: q_grasp - scale .* (center + axes c)
+  Eigen::VectorXd q_grasp;                                          ///< [n] rad, contacts touching
+  Eigen::VectorXd q_pregrasp;                                       ///< [n] rad, fingers opened along the synergies
   Eigen::Isometry3d X_OH = Eigen::Isometry3d::Identity();           ///< hand (palm) in the object, grasping
   Eigen::Isometry3d X_OH_pregrasp = Eigen::Isometry3d::Identity();  ///< hand retreated
   std::vector<Contact> contacts;
   GraspQuality quality;
-  bool synergy_grasp = true;           ///< slack norm within the stated bound; otherwise "free"
+  bool synergy_grasp = true;               ///< slack norm within the stated bound; otherwise "free"
   std::vector<ArmSolution> arm_solutions;  ///< filled by Algorithm 1; empty: not reachable or not yet asked
 };
 

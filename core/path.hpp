@@ -26,7 +26,7 @@ struct JointPath {
 
 enum class PlanStatus {
   solved,
-  no_goals,            ///< no goal was given, or none is collision-free
+  no_goals,  ///< no goal was given, or none is collision-free
   start_in_collision,
   start_out_of_limits,
   iteration_limit,
@@ -37,15 +37,15 @@ enum class PlanStatus {
 
 struct PlanResult {
   PlanStatus status = PlanStatus::no_goals;
-  JointPath path;                                ///< empty unless solved; ends at a pre-grasp, before the closing segment
-  int goal = -1;                                 ///< index of the goal that was reached
-  std::int64_t iterations = 0;                   ///< passes of Algorithm 2's loop
-  std::int64_t extends = 0;                      ///< calls of SYNEXTEND
-  std::int64_t extends_grown = 0;                ///< those that added a vertex
-  std::int64_t collision_checks = 0;             ///< configurations evaluated
-  double length = 0.0;                           ///< rad, sum of sqrt(sum_j w_j dq_j^2)
-  double length_l1 = 0.0;                        ///< rad, sum of w_j |dq_j|
-  std::string detail;                            ///< a sentence for a person when not solved
+  JointPath path;                     ///< empty unless solved; ends at a pre-grasp, before the closing segment
+  int goal = -1;                      ///< index of the goal that was reached
+  std::int64_t iterations = 0;        ///< passes of Algorithm 2's loop
+  std::int64_t extends = 0;           ///< calls of SYNEXTEND
+  std::int64_t extends_grown = 0;     ///< those that added a vertex
+  std::int64_t collision_checks = 0;  ///< configurations evaluated
+  double length = 0.0;                ///< rad, sum of sqrt(sum_j w_j dq_j^2)
+  double length_l1 = 0.0;             ///< rad, sum of w_j |dq_j|
+  std::string detail;                 ///< a sentence for a person when not solved
 };
 
 }  // namespace opponens

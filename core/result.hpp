@@ -11,12 +11,12 @@ namespace opponens {
 
 /// Why an answer does not exist. A caller's broken contract is not a Failure: see core/require.hpp.
 enum class FailureCode {
-  too_few_samples,     ///< a statistic needs more samples than were given
-  degenerate,          ///< nothing varies: no direction, no variance, no extent
-  out_of_reach,        ///< no inverse kinematics solution inside the limits
-  not_converged,       ///< an iterative solver stopped without meeting its tolerance
-  invalid_input,       ///< the input's content does not allow the computation; detail says where
-  not_found,           ///< a named thing is absent
+  too_few_samples,  ///< a statistic needs more samples than were given
+  degenerate,       ///< nothing varies: no direction, no variance, no extent
+  out_of_reach,     ///< no inverse kinematics solution inside the limits
+  not_converged,    ///< an iterative solver stopped without meeting its tolerance
+  invalid_input,    ///< the input's content does not allow the computation; detail says where
+  not_found,        ///< a named thing is absent
 };
 
 struct Failure {

@@ -21,10 +21,10 @@ class Rng {
   static constexpr result_type max() { return std::numeric_limits<result_type>::max(); }
   result_type operator()();
 
-  double uniform();                         ///< in [0, 1), 53 random bits
-  double uniform(double low, double high);  ///< in [low, high)
-  double normal();                          ///< standard normal (Marsaglia's polar method)
-  std::uint64_t index(std::uint64_t count); ///< in [0, count), unbiased; count > 0
+  double uniform();                          ///< in [0, 1), 53 random bits
+  double uniform(double low, double high);   ///< in [low, high)
+  double normal();                           ///< standard normal (Marsaglia's polar method)
+  std::uint64_t index(std::uint64_t count);  ///< in [0, count), unbiased; count > 0
 
  private:
   std::array<std::uint64_t, 4> state_;

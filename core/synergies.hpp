@@ -11,15 +11,15 @@ namespace opponens {
 
 /// Moments of a set of hand configurations, n joints.
 struct SampleStatistics {
-  double count = 0.0;         ///< number of samples, or the sum of their weights
-  Eigen::VectorXd mean;       ///< [n] rad
-  Eigen::MatrixXd covariance; ///< [n x n] rad^2, symmetric, positive semidefinite
+  double count = 0.0;          ///< number of samples, or the sum of their weights
+  Eigen::VectorXd mean;        ///< [n] rad
+  Eigen::MatrixXd covariance;  ///< [n x n] rad^2, symmetric, positive semidefinite
 };
 
 /// Principal axes of a set of hand configurations: the paper's synergies (section 4.1).
 struct SynergyBasis {
-  Eigen::VectorXd mean;      ///< [n] scaled joint units
-  Eigen::MatrixXd axes;      ///< [n x n] orthonormal columns = synergies; the largest-magnitude entry of each is positive
+  Eigen::VectorXd mean;  ///< [n] scaled joint units
+  Eigen::MatrixXd axes;  ///< [n x n] orthonormal columns = synergies; the largest-magnitude entry of each is positive
   Eigen::VectorXd variance;  ///< [n] descending, >= 0
   double count = 0.0;        ///< samples behind it
 };
@@ -37,8 +37,8 @@ struct SynergyBox {
 
 /// The synergies of one phase and group, and how they came about.
 struct SynergyGroup {
-  std::string name;                           ///< group name; "pre-grasp" for the common first phase
-  std::string phase;                          ///< "pre-grasp", "grasp" or "all"
+  std::string name;   ///< group name; "pre-grasp" for the common first phase
+  std::string phase;  ///< "pre-grasp", "grasp" or "all"
   SynergyBasis basis;
   SynergyBox box;                             ///< the first k synergies
   int dof_effective = 0;                      ///< dimension of the subspace the samples span
@@ -48,7 +48,7 @@ struct SynergyGroup {
 struct SynergySet {
   std::vector<std::string> joint_names;  ///< [n]
   SynergyGroup pre_grasp;
-  std::vector<SynergyGroup> grasp;       ///< one per group, sorted by name
+  std::vector<SynergyGroup> grasp;  ///< one per group, sorted by name
 };
 
 }  // namespace opponens

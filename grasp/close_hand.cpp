@@ -8,107 +8,17 @@
 #include <limits>
 
 #include "analysis/synergy_box.hpp"
+#include "grasp/clearance_probe.hpp"
 
 namespace opponens::grasp {
 namespace {
 
-constexpr double kTouch = 0.0002;          // m, contact is met within this
-constexpr double kExactWithin = 0.004;     // m, nearer points are measured on the mesh instead of the grid
-constexpr double kObstacleMargin = 0.003;  // m, a finger stops this far from support and obstacles
-constexpr double kSelfMargin = 0.001;      // m, and this far from the hand's other links
-constexpr double kFar = 0.05;              // m, distances beyond it do not matter
-constexpr double kMaxRetreat = 0.03;       // m
-constexpr double kMaxAdvance = 0.02;       // m
-constexpr double kMaxTravel = 1.5;         // rad of the fastest joint of a finger
-constexpr double kMaxOpening = 1.2;        // rad
+constexpr double kTouch = 0.0002;     // m, contact is met within this
+constexpr double kMaxRetreat = 0.03;  // m
+constexpr double kMaxAdvance = 0.02;  // m
+constexpr double kMaxTravel = 0.5;    // rad of the fastest joint of a finger
+constexpr double kMaxOpening = 1.2;   // rad
 constexpr int kMaxSteps = 80;
-
-struct Clearance {
-  double value = std::numeric_limits<double>::infinity();  ///< m
-  int link = -1;                                           ///< nearest link
-};
-
-/// What a moving part of the hand looks out for.
-enum class Watch { object, surroundings, everything };  // object; and obstacles; and the hand's other links
-
-/// Least distance of the links' sampled points to what they watch for, obstacles and other links less their margins.
-class Probe {
- public:
-  explicit Probe(const ClosingScene& scene) : scene_(scene) {}
-
-  Clearance operator()(const HandPose& pose, const std::vector<int>& links, Watch watch) {
-    scene_.hand.link_poses(pose.q, X_HL_);
-    near_.clear();
-    Clearance least{kFar, -1};
-    for (const int link : links) {
-      look_at_object(pose.X_OH, static_cast<std::size_t>(link), least);
-      if (watch != Watch::object) look_at_obstacles(pose.X_OH, static_cast<std::size_t>(link), least);
-      if (watch == Watch::everything) look_at_hand(static_cast<std::size_t>(link), least);
-    }
-    // Most promising first: once a point's rough distance exceeds the best by the grid's error, the rest cannot win.
-    std::sort(near_.begin(), near_.end(), [](const Near& a, const Near& b) { return a.rough < b.rough; });
-    for (const Near& point : near_) {
-      if (point.rough > least.value + scene_.target.grid->spacing()) break;
-      const double exact = scene_.target.distance->signed_distance(point.p_O);
-      if (exact < least.value) least = {exact, point.link};
-    }
-    return least;
-  }
-
-  const std::vector<Eigen::Isometry3d>& link_poses() const { return X_HL_; }
-
- private:
-  struct Near {
-    double rough;
-    int link;
-    Eigen::Vector3d p_O;
-  };
-
-  void look_at_object(const Eigen::Isometry3d& X_OH, std::size_t link, Clearance& least) {
-    const DistanceGrid& grid = *scene_.target.grid;
-    const Eigen::Isometry3d X_OL = X_OH * X_HL_[link];
-    const double bound = grid.value(X_OL * scene_.surface.link_center[link]) - scene_.surface.link_radius[link];
-    if (bound - grid.spacing() > least.value) return;
-    for (const Eigen::Vector3d& p_L : scene_.surface.medium[link]) {
-      const Eigen::Vector3d p_O = X_OL * p_L;
-      const double rough = grid.value(p_O);
-      if (rough < kExactWithin) {
-        near_.push_back({rough, static_cast<int>(link), p_O});
-      } else if (rough < least.value) {
-        least = {rough, static_cast<int>(link)};
-      }
-    }
-  }
-
-  void look_at_obstacles(const Eigen::Isometry3d& X_OH, std::size_t link, Clearance& least) {
-    const Eigen::Isometry3d X_OL = X_OH * X_HL_[link];
-    const double radius = scene_.surface.link_radius[link];
-    const Eigen::Vector3d center = X_OL * scene_.surface.link_center[link];
-    if (scene_.target.obstacle_distance(center, kFar).value - radius - kObstacleMargin > least.value) return;
-    for (const Eigen::Vector3d& p_L : scene_.surface.medium[link]) {
-      const double free = scene_.target.obstacle_distance(X_OL * p_L, kFar).value - kObstacleMargin;
-      if (free < least.value) least = {free, -1};
-    }
-  }
-
-  void look_at_hand(std::size_t link, Clearance& least) {
-    for (const int stranger : scene_.surface.strangers[link]) {
-      const auto other = static_cast<std::size_t>(stranger);
-      const Eigen::Isometry3d X_BA = X_HL_[other].inverse() * X_HL_[link];
-      const double apart = (X_BA * scene_.surface.link_center[link] - scene_.surface.link_center[other]).norm();
-      const double bound = apart - scene_.surface.link_radius[link] - scene_.surface.link_radius[other];
-      if (bound - kSelfMargin > least.value) continue;
-      for (const Eigen::Vector3d& p_A : scene_.surface.medium[link]) {
-        const double free = scene_.surface.links[other].query(X_BA * p_A, kFar).value - kSelfMargin;
-        if (free < least.value) least = {free, -1};
-      }
-    }
-  }
-
-  const ClosingScene& scene_;
-  std::vector<Eigen::Isometry3d> X_HL_;
-  std::vector<Near> near_;
-};
 
 /// A one-parameter motion s -> pose with a bound of how fast its points move, m per unit of s.
 struct Motion {
@@ -125,7 +35,7 @@ struct Stop {
 
 /// Follows a motion from a clear pose until the links are kTouch or less from the object, by steps no longer than the
 /// clearance allows; an overshoot (speed is an estimate) is taken back by bisection.
-Stop advance(const Motion& motion, const std::vector<int>& links, Watch watch, Probe& probe) {
+Stop advance(const Motion& motion, const std::vector<int>& links, Watch watch, ClearanceProbe& probe) {
   double clear = 0.0;
   Clearance at_clear = probe(motion.pose(0.0), links, watch);
   double blocked = -1.0;
@@ -147,7 +57,7 @@ Stop advance(const Motion& motion, const std::vector<int>& links, Watch watch, P
 
 /// Opens a finger until it is clear; the amount, or nullopt.
 std::optional<HandPose> open_finger(const ClosingScene& scene, const Finger& finger, const HandPose& start,
-                                    Probe& probe) {
+                                    ClearanceProbe& probe) {
   HandPose pose = start;
   for (double s = 0.0; s <= kMaxOpening; s += 0.06) {
     pose.q = start.q;
@@ -159,7 +69,7 @@ std::optional<HandPose> open_finger(const ClosingScene& scene, const Finger& fin
 }
 
 /// Draws the hand back along its approach direction until the palm is out of the object.
-bool retreat(const ClosingScene& scene, HandPose& pose, Probe& probe) {
+bool retreat(const ClosingScene& scene, HandPose& pose, ClearanceProbe& probe) {
   const Eigen::Vector3d back = -(pose.X_OH.linear() * scene.surface.approach);
   double moved = 0.0;
   while (true) {
@@ -219,7 +129,7 @@ Eigen::VectorXd approaching_direction(const ClosingScene& scene, const Finger& f
 /// Moves the finger along direction until it touches, then the joints beyond each touching link. False (and the pose as
 /// it was) when it meets nothing.
 bool close_finger(const ClosingScene& scene, const Finger& finger, const Eigen::VectorXd& direction, HandPose& pose,
-                  Probe& probe) {
+                  ClearanceProbe& probe) {
   Eigen::VectorXd moving = Eigen::VectorXd::Zero(pose.q.size());
   for (const int j : finger.joints) moving[j] = direction[j];
   const HandPose before = pose;
@@ -263,7 +173,7 @@ Eigen::VectorXd closing_direction(const SynergyBox& group, const SynergyBox& pre
 }
 
 std::optional<HandPose> close_hand(const ClosingScene& scene, const HandPose& start) {
-  Probe probe(scene);
+  ClearanceProbe probe(scene);
   HandPose pose{start.X_OH, scene.hand.clip(start.q)};
   if (!retreat(scene, pose, probe)) return std::nullopt;
   for (const Finger& finger : scene.surface.fingers) {
@@ -304,13 +214,17 @@ std::vector<Contact> find_contacts(const ClosingScene& scene, const HandPose& po
     if (std::abs(at.distance) <= tolerance) add(link, at);
   }
   for (std::size_t link = 0; link < X_HL.size(); ++link) {
-    if (touches[link]) continue;
+    const Eigen::Isometry3d X_OL = pose.X_OH * X_HL[link];
+    const DistanceGrid& grid = *scene.target.grid;
+    const double band = tolerance + grid.spacing();
+    if (touches[link] || grid.value(X_OL * scene.surface.link_center[link]) - scene.surface.link_radius[link] > band) {
+      continue;
+    }
     robot::MeshDistance::Query nearest{};
     nearest.distance = std::numeric_limits<double>::infinity();
-    const Eigen::Isometry3d X_OL = pose.X_OH * X_HL[link];
-    for (const Eigen::Vector3d& p_L : scene.surface.medium[link]) {
+    for (const Eigen::Vector3d& p_L : scene.surface.dense[link]) {
       const Eigen::Vector3d p_O = X_OL * p_L;
-      if (scene.target.grid->value(p_O) > tolerance + scene.target.grid->spacing()) continue;
+      if (grid.value(p_O) > band) continue;
       const auto at = scene.target.distance->query(p_O);
       if (at.distance < nearest.distance) nearest = at;
     }

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kObstacleClearance = 0.001;  // m, of a grasp from support and obstacles
 constexpr double kSelfClearance = 0.0005;     // m, between fingers: what a path keeps (design: "Verification")
+constexpr double kOtherClearance = 0.0005;    // m, of links without a contact from the object
 constexpr int kSweepSteps = 12;
 
 /// The straight motion from grasp to pre-grasp at s in [0, 1].
@@ -24,12 +25,21 @@ HandPose between(const HandPose& grasp, const HandPose& pregrasp, double s) {
   return pose;
 }
 
+/// Whether touching links penetrate no more than they may and the others keep clear.
+bool keeps(const std::vector<double>& distances, const GraspLimits& limits) {
+  for (std::size_t link = 0; link < distances.size(); ++link) {
+    if (distances[link] < (limits.touching[link] ? -limits.max_penetration : kOtherClearance)) return false;
+  }
+  return true;
+}
+
 bool sweep_is_clear(const ClosingScene& scene, const HandCheckers& checkers, const HandPose& grasp,
-                    const HandPose& pregrasp, double max_penetration) {
+                    const HandPose& pregrasp, const GraspLimits& limits) {
   for (int i = 1; i < kSweepSteps; ++i) {
     const HandPose pose = between(grasp, pregrasp, static_cast<double>(i) / kSweepSteps);
-    if (hand_object_distance(scene, pose, Density::medium, 0.001) < -max_penetration) return false;
+    if (!keeps(link_object_distances(scene, pose, Density::medium, kOtherClearance), limits)) return false;
     if (obstacle_distance(scene, pose, kObstacleClearance) < kObstacleClearance) return false;
+    if (self_distance(scene, pose, kSelfClearance) < kSelfClearance) return false;
   }
   for (int i = 2; i < kSweepSteps; i += 3) {
     const HandPose pose = between(grasp, pregrasp, static_cast<double>(i) / kSweepSteps);
@@ -38,46 +48,55 @@ bool sweep_is_clear(const ClosingScene& scene, const HandCheckers& checkers, con
   return true;
 }
 
+bool clear_of_object(const ClosingScene& scene, const HandPose& pose, double clearance) {
+  for (const Density density : {Density::medium, Density::dense}) {
+    const auto distances = link_object_distances(scene, pose, density, clearance);
+    if (*std::min_element(distances.begin(), distances.end()) < clearance) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
-double hand_object_distance(const ClosingScene& scene, const HandPose& pose, Density density, double exact_below) {
+std::vector<double> link_object_distances(const ClosingScene& scene, const HandPose& pose, Density density,
+                                          double horizon) {
   const auto X_HL = scene.hand.link_poses(pose.q);
   const HandSurface& surface = scene.surface;
   const DistanceGrid& grid = *scene.target.grid;
-  double least = std::numeric_limits<double>::infinity();
+  std::vector<double> distances(X_HL.size(), std::numeric_limits<double>::infinity());
   for (std::size_t link = 0; link < X_HL.size(); ++link) {
     const Eigen::Isometry3d X_OL = pose.X_OH * X_HL[link];
     const double bound = grid.value(X_OL * surface.link_center[link]) - surface.link_radius[link];
-    if (bound - grid.spacing() > least) continue;
+    if (bound - grid.spacing() > horizon) continue;
+    double& least = distances[link];
     for (const Eigen::Vector3d& p_L : (density == Density::dense ? surface.dense : surface.medium)[link]) {
       const Eigen::Vector3d p_O = X_OL * p_L;
-      double d = grid.value(p_O);
+      const double rough = grid.value(p_O) - grid.spacing();
       // Only a point that could still be the nearest is worth an exact answer.
-      if (d < exact_below + grid.spacing() && d < least + grid.spacing()) {
-        d = scene.target.distance->signed_distance(p_O);
-      }
-      least = std::min(least, d);
+      if (rough < horizon && rough < least) least = std::min(least, scene.target.distance->signed_distance(p_O));
     }
   }
-  return least;
+  return distances;
 }
 
-double object_hand_distance(const ClosingScene& scene, const HandPose& pose, double horizon) {
+std::vector<double> object_link_distances(const ClosingScene& scene, const HandPose& pose, double horizon) {
   const auto X_HL = scene.hand.link_poses(pose.q);
   const HandSurface& surface = scene.surface;
-  double least = horizon;
+  std::vector<double> distances(X_HL.size(), horizon);
   for (std::size_t link = 0; link < X_HL.size(); ++link) {
     if (surface.links[link].empty()) continue;
-    const Eigen::Isometry3d X_LO = (pose.X_OH * X_HL[link]).inverse();
+    const Eigen::Isometry3d X_OL = pose.X_OH * X_HL[link];
     const double reach = surface.link_radius[link] + horizon;
-    if (scene.target.grid->value(X_LO.inverse() * surface.link_center[link]) > reach + 0.01) continue;
+    const DistanceGrid& grid = *scene.target.grid;
+    if (grid.value(X_OL * surface.link_center[link]) > reach + grid.spacing()) continue;
+    const Eigen::Isometry3d X_LO = X_OL.inverse();
     for (const Eigen::Vector3d& p_O : scene.target.surface) {
       const Eigen::Vector3d p_L = X_LO * p_O;
       if ((p_L - surface.link_center[link]).squaredNorm() > reach * reach) continue;
-      least = std::min(least, surface.links[link].query(p_L, horizon).value);
+      distances[link] = std::min(distances[link], surface.links[link].query(p_L, horizon).value);
     }
   }
-  return least;
+  return distances;
 }
 
 double self_distance(const ClosingScene& scene, const HandPose& pose, double horizon) {
@@ -119,18 +138,18 @@ HandCheckers hand_checkers(const robot::RobotModel& hand, const robot::Scene& sc
 }
 
 std::string posture_fault(const ClosingScene& scene, const HandCheckers& checkers, const HandPose& pose,
-                          double max_penetration) {
+                          const GraspLimits& limits) {
   if (obstacle_distance(scene, pose, kObstacleClearance) < kObstacleClearance) return "too near to an obstacle";
   if (!checkers.touching.free(scene.target.X_WO * pose.X_OH, pose.q)) return "hand in collision";
   if (self_distance(scene, pose, kSelfClearance) < kSelfClearance) return "fingers touch each other";
-  if (hand_object_distance(scene, pose, Density::dense, 0.001) < -max_penetration) return "penetrates the object";
-  if (object_hand_distance(scene, pose, 0.001) < -max_penetration) return "penetrates the object";
+  if (!keeps(link_object_distances(scene, pose, Density::dense, kOtherClearance), limits))
+    return "penetrates the object";
+  if (!keeps(object_link_distances(scene, pose, kOtherClearance), limits)) return "penetrates the object";
   return {};
 }
 
 std::optional<HandPose> find_pregrasp(const ClosingScene& scene, const HandCheckers& checkers,
-                                      const SynergyBox& pre_grasp, const HandPose& grasp, double clearance,
-                                      double max_penetration) {
+                                      const SynergyBox& pre_grasp, const HandPose& grasp, const GraspLimits& limits) {
   const Eigen::VectorXd opened = scene.hand.clip(analysis::project(pre_grasp, grasp.q));
   const Eigen::VectorXd against = scene.hand.clip(analysis::project(pre_grasp, grasp.q - 0.5 * scene.direction));
   const Eigen::VectorXd center = scene.hand.clip(pre_grasp.scale.cwiseProduct(pre_grasp.center));
@@ -139,12 +158,11 @@ std::optional<HandPose> find_pregrasp(const ClosingScene& scene, const HandCheck
     for (const Eigen::VectorXd* q : {&opened, &against, &center}) {
       HandPose pose{grasp.X_OH, *q};
       pose.X_OH.translation() += distance * back;
-      if (hand_object_distance(scene, pose, Density::medium, clearance) < clearance) continue;
-      if (hand_object_distance(scene, pose, Density::dense, clearance) < clearance) continue;
+      if (!clear_of_object(scene, pose, limits.clearance_pregrasp)) continue;
       if (self_distance(scene, pose, kSelfClearance) < kSelfClearance) continue;
       if (obstacle_distance(scene, pose, kObstacleClearance) < kObstacleClearance) continue;
       if (!checkers.apart.free(scene.target.X_WO * pose.X_OH, pose.q)) continue;
-      if (sweep_is_clear(scene, checkers, grasp, pose, max_penetration)) return pose;
+      if (sweep_is_clear(scene, checkers, grasp, pose, limits)) return pose;
     }
   }
   return std::nullopt;

@@ -14,13 +14,14 @@ namespace opponens::grasp {
 /// Which of the hand's sampled points a question looks at.
 enum class Density { medium, dense };
 
-/// Least signed distance of the hand's sampled points to the object, m; exact (MeshDistance) below `exact_below`, from
-/// the grid above it.
-double hand_object_distance(const ClosingScene& scene, const HandPose& pose, Density density, double exact_below);
+/// Per link, least signed distance of its sampled points to the object, m: exact (MeshDistance) where it is below
+/// horizon, at least horizon elsewhere.
+std::vector<double> link_object_distances(const ClosingScene& scene, const HandPose& pose, Density density,
+                                          double horizon);
 
-/// Deepest object surface point inside a hand link, as a signed distance (negative: inside), m; at most `horizon`. Sees
-/// the edges and corners of an object that slip between the hand's own points.
-double object_hand_distance(const ClosingScene& scene, const HandPose& pose, double horizon);
+/// The same seen from the object: per link, the least signed distance of the object's surface points to it, m; at most
+/// horizon. Sees edges and corners of the object that slip between the hand's own points.
+std::vector<double> object_link_distances(const ClosingScene& scene, const HandPose& pose, double horizon);
 
 /// Least distance between points of different links that the model does not allow to touch, m; at most `horizon`.
 double self_distance(const ClosingScene& scene, const HandPose& pose, double horizon);
@@ -35,16 +36,24 @@ struct HandCheckers {
 };
 HandCheckers hand_checkers(const robot::RobotModel& hand, const robot::Scene& scene, const std::string& object);
 
-/// Why a posture is no grasp, or an empty string: penetration beyond the bound, support or obstacle nearer than 1 mm,
-/// fingers nearer than 0.5 mm to each other, or a collision by the collision truth.
+/// What a grasp is held to.
+struct GraspLimits {
+  std::vector<bool> touching;  ///< per link: has a contact; other links keep clear of the object by 0.5 mm
+  double max_penetration;      ///< m, of touching links
+  double clearance_pregrasp;   ///< m
+};
+
+/// Why a posture is no grasp, or an empty string: penetration beyond the bound, a link without a contact nearer than
+/// 0.5 mm to the object, support or obstacle nearer than 1 mm, fingers nearer than 0.5 mm to each other, or a collision
+/// by the collision truth.
 std::string posture_fault(const ClosingScene& scene, const HandCheckers& checkers, const HandPose& pose,
-                          double max_penetration);
+                          const GraspLimits& limits);
 
 /// Pre-grasp of a closed hand: fingers opened towards the pre-grasp box and hand drawn back along its approach
-/// direction, by the least of a fixed ladder of amounts for which the hand keeps clearance from the object, collides
-/// with nothing, and can move straight to the grasp without penetrating anything by more than max_penetration.
+/// direction, by the least of a fixed ladder of amounts for which the hand keeps its clearance from the object,
+/// collides with nothing, and can move straight (in palm position and joints) to the grasp with what posture_fault
+/// asks.
 std::optional<HandPose> find_pregrasp(const ClosingScene& scene, const HandCheckers& checkers,
-                                      const SynergyBox& pre_grasp, const HandPose& grasp, double clearance,
-                                      double max_penetration);
+                                      const SynergyBox& pre_grasp, const HandPose& grasp, const GraspLimits& limits);
 
 }  // namespace opponens::grasp

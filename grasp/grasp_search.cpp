@@ -144,10 +144,12 @@ Trial run_trial(const Search& search, std::int64_t index) {
   if (contacts.size() < 3) return rejected("fewer than three contacts");
   GraspQuality quality = evaluate(contacts, convention_of(search));
   if (!quality.force_closure()) return rejected("not force closure");
-  const std::string fault = posture_fault(scene, search.checkers, *closed, settings.max_penetration);
+  GraspLimits limits{std::vector<bool>(search.hand.links().size(), false), settings.max_penetration,
+                     settings.clearance_pregrasp};
+  for (const Contact& contact : contacts) limits.touching[search.hand.link_index(contact.link)] = true;
+  const std::string fault = posture_fault(scene, search.checkers, *closed, limits);
   if (!fault.empty()) return rejected(fault);
-  const auto pregrasp = find_pregrasp(scene, search.checkers, search.pre_grasp, *closed, settings.clearance_pregrasp,
-                                      settings.max_penetration);
+  const auto pregrasp = find_pregrasp(scene, search.checkers, search.pre_grasp, *closed, limits);
   if (!pregrasp) return rejected("no clear pre-grasp");
   Grasp grasp = describe(search, *closed, *pregrasp, std::move(contacts), std::move(quality));
   if (search.accept) {

@@ -27,7 +27,7 @@ void add_bounding_sphere(HandSurface& surface) {
   const std::vector<Eigen::Vector3d>& points = surface.dense.back();
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& p : points) box.extend(p);
-  const Eigen::Vector3d center = points.empty() ? Eigen::Vector3d::Zero() : box.center();
+  const Eigen::Vector3d center = points.empty() ? Eigen::Vector3d::Zero().eval() : box.center().eval();
   double radius = 0.0;
   for (const Eigen::Vector3d& p : points) radius = std::max(radius, (p - center).norm());
   surface.link_center.push_back(center);

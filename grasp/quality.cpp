@@ -26,7 +26,11 @@ GraspQuality evaluate(const std::vector<Contact>& contacts, const QualityConvent
   if (wrench_rank(wrenches, kRankTolerance) < 6) return quality;
   const WrenchSpace space(wrenches, static_cast<int>(wrenches.cols() / static_cast<Eigen::Index>(contacts.size())),
                           convention.norm);
-  const OriginBall ball = largest_origin_ball(space);
+  OriginBall ball = largest_origin_ball(space);
+  if (!ball.converged) {
+    // Rounding left the growing polytope inconsistent: the whole hull answers instead, where it is small enough.
+    if (const auto hull = wrench_hull(space.points(kMaxHullPoints))) ball.radius = hull->least_offset;
+  }
   quality.state = ball.inside ? ClosureState::force_closure : ClosureState::not_force_closure;
   quality.epsilon = ball.radius;
   quality.direction = ball.direction;

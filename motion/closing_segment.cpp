@@ -3,12 +3,31 @@
 #include "motion/closing_segment.hpp"
 
 #include <cstdint>
+#include <set>
 #include <string>
 
 #include "core/require.hpp"
 #include "motion/edge_check.hpp"
 
 namespace opponens::motion {
+
+World closing_world(const robot::CollisionChecker& free_space, const robot::CollisionChecker& closing,
+                    const robot::RobotModel& robot, const std::vector<Contact>& contacts, double resolution,
+                    const ContactLimit& contact) {
+  std::set<std::string> links;
+  for (const Contact& c : contacts) links.insert(c.link);
+  return make_world(
+      [&free_space, &closing, &robot, links, contact](const Eigen::VectorXd& q) {
+        if (!robot.within_limits(q)) return false;
+        if (free_space.free(q)) return true;
+        if (!closing.free(q)) return false;
+        for (const robot::BodyPair& pair : free_space.colliding_pairs(q)) {
+          if (links.count(pair.first) == 0 && links.count(pair.second) == 0) return false;
+        }
+        return contact.depth == nullptr || (*contact.depth)(q) <= contact.max_depth;
+      },
+      robot.weights(), resolution);
+}
 
 World closing_world(const robot::CollisionChecker& closing, const robot::RobotModel& robot, double resolution,
                     const ContactLimit& contact) {

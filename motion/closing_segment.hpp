@@ -3,9 +3,11 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include <Eigen/Core>
 
+#include "core/grasp.hpp"
 #include "core/path.hpp"
 #include "core/result.hpp"
 #include "motion/contact_depth.hpp"
@@ -15,8 +17,16 @@
 
 namespace opponens::motion {
 
-/// The world of a closing segment: joint limits, the checker that lets hand and object touch, and the depth to which
-/// they may. All referred to; they must outlive the world.
+/// The world of a closing segment: joint limits; collision-free, or touching only where the grasp's contacts say so:
+/// what collides at q is then a pair of a contact's link that `closing` leaves out, and no deeper than
+/// contact.max_depth. free_space: checker with everything; closing: checker that leaves out hand-object pairs (it may
+/// leave out more links than have contacts, so one serves all grasps). All but the contacts are referred to and must
+/// outlive the world.
+World closing_world(const robot::CollisionChecker& free_space, const robot::CollisionChecker& closing,
+                    const robot::RobotModel& robot, const std::vector<Contact>& contacts, double resolution,
+                    const ContactLimit& contact = {});
+
+/// The same for a checker that leaves out exactly the pairs that may touch: those of one grasp's contacts.
 World closing_world(const robot::CollisionChecker& closing, const robot::RobotModel& robot, double resolution,
                     const ContactLimit& contact = {});
 

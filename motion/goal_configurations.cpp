@@ -65,6 +65,19 @@ std::string first_pair(const robot::CollisionChecker& checker, const Eigen::Vect
   return pairs.empty() ? "" : pairs.front().first + "-" + pairs.front().second;
 }
 
+/// Why q is no part of a closing segment.
+std::string closing_fault(const Grasp& grasp, const robot::CollisionChecker& free_space,
+                          const robot::CollisionChecker& closing, const Eigen::VectorXd& q) {
+  std::string pair = first_pair(closing, q);
+  for (const robot::BodyPair& touching : free_space.colliding_pairs(q)) {
+    const bool contact = std::any_of(grasp.contacts.begin(), grasp.contacts.end(), [&](const Contact& c) {
+      return c.link == touching.first || c.link == touching.second;
+    });
+    if (pair.empty() && !contact) pair = touching.first + "-" + touching.second;
+  }
+  return pair.empty() ? "closing segment too deep in the object" : "closing segment in collision: " + pair;
+}
+
 }  // namespace
 
 Eigen::VectorXd join(const robot::RobotModel& robot, const Eigen::VectorXd& q_arm, const Eigen::VectorXd& q_hand) {
@@ -83,7 +96,7 @@ std::string reach(Grasp& grasp, const robot::RobotModel& robot, const robot::Arm
   const auto grasps = kinematics.solve(X_RO * grasp.X_OH);
   const auto pregrasps = kinematics.solve(X_RO * grasp.X_OH_pregrasp);
   if (grasps.empty() || pregrasps.empty()) return "no inverse kinematics";
-  const World world = closing_world(closing, robot, resolution, contact);
+  const World world = closing_world(free_space, closing, robot, grasp.contacts, resolution, contact);
   const Eigen::VectorXd weights = robot.weights().segment(robot.arm().first, robot.arm().count);
   std::string pregrasp_reason;
   std::string closing_reason;
@@ -101,9 +114,7 @@ std::string reach(Grasp& grasp, const robot::RobotModel& robot, const robot::Arm
     const ClosingSegment segment = closing_segment(q_pregrasp, q_grasp, robot.hand(), world);
     if (segment.invalid) {
       if (closing_reason.empty()) {
-        const std::string pair = first_pair(closing, *segment.invalid);
-        closing_reason =
-            pair.empty() ? "closing segment too deep in the object" : "closing segment in collision: " + pair;
+        closing_reason = closing_fault(grasp, free_space, closing, *segment.invalid);
       }
       continue;
     }

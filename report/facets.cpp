@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "report/facets.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>

@@ -78,6 +78,7 @@ std::string draw_postures(const robot::RobotModel& hand, const RobotFacets& face
   Svg svg(cell_width * static_cast<double>(postures.size()), height, title);
   if (shown.empty()) shown.push_back(Eigen::Vector3d::Zero());  // a hand without geometry: an empty picture
   const View view = fit_view(toward, axes.fingers, shown, cell_width, height - kCaption, 4.0);
+  svg.rect(0.0, 0.0, cell_width * static_cast<double>(postures.size()), height - kCaption, "class=\"sky\"");
   for (std::size_t i = 0; i < postures.size(); ++i) {
     const double left = cell_width * static_cast<double>(i);
     svg.open_clip(left, 0.0, cell_width, height - kCaption);

@@ -58,14 +58,14 @@ figcaption{color:var(--soft);font-size:13px;margin-top:4px;max-width:80ch}
 .cards{display:grid;grid-template-columns:repeat(auto-fill,minmax(500px,1fr));gap:18px;margin:14px 0}
 .card{background:var(--card);border:1px solid var(--rule);border-radius:6px;padding:12px 14px;break-inside:avoid}
 .card h3{margin:0 0 6px}.card .pair{display:grid;grid-template-columns:1fr 1fr;gap:8px}.card figure{margin:4px 0}
-.card table{margin:6px 0 0;width:100%}
+section>.card{margin:12px 0}.card table{margin:6px 0 0;width:100%}
 .shots{display:grid;grid-template-columns:1fr 1fr;gap:8px 16px}.shots.small{grid-template-columns:repeat(4,1fr)}
 .good{color:var(--good);font-weight:600}.bad{color:var(--bad);font-weight:600}
 details{margin:8px 0}summary{cursor:pointer;color:var(--s0)}
 svg text{fill:var(--fg);font-family:system-ui,"Segoe UI",Roboto,"Helvetica Neue",Arial,sans-serif}
 .tick{font-size:11px}.axis{font-size:12px}.grid{stroke:var(--rule);stroke-width:.6}
 .frame{fill:none;stroke:var(--soft);stroke-width:.8}.sky{fill:var(--sky)}
-.solid path{fill:currentColor;stroke:currentColor;stroke-width:9;stroke-linejoin:round}
+.solid path{fill:currentColor;stroke:currentColor;stroke-width:7;stroke-linejoin:round}
 .halo{stroke:#fff;stroke-width:4}.normal{stroke:#c4007a;stroke-width:1.8}.contact{fill:#c4007a;stroke:#fff;stroke-width:1.2}
 .trail{fill:none;stroke:#0050b0;stroke-width:1.8}.trail-halo{fill:none;stroke:#fff;stroke-width:3.6;stroke-opacity:.8}
 .trail-start{fill:#fff;stroke:#0050b0;stroke-width:1.6}.trail-end{fill:#0050b0}

@@ -17,7 +17,7 @@ namespace opponens::report {
 namespace {
 
 constexpr int kRaster = 2;         // raster cells per px in the visibility test
-constexpr double kAmbient = 0.48;  // share of a paint's brightness without light
+constexpr double kAmbient = 0.56;  // share of a paint's brightness without light
 constexpr double kGhost = 0.8;     // a facet with less of its own visible area left is drawn as a ghost too
 constexpr int kShades = 24;        // brightness levels: equal neighbours merge into one path
 

@@ -56,8 +56,9 @@ DrawnScene drawn_scene(const robot::RobotModel& robot, const robot::Scene& scene
   drawn.robot = robot_facets(robot, max_triangles);
   for (const auto& body : scene.bodies) {
     std::vector<Facet> surface;
+    const FacetDetail detail{16, body.name == object ? 1000 : 500};
     for (const auto& geometry : body.geometry) {
-      append(surface, facets(geometry, paint_of(scene, body, object), {16, 500}), body.X_WB);
+      append(surface, facets(geometry, paint_of(scene, body, object), detail), body.X_WB);
     }
     const auto corners = corners_of(surface);
     const Bounds bounds = bounds_of(corners);

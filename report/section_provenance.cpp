@@ -1,8 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The opponens authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <map>
+#include <string_view>
 #include <tuple>
 
 #include "report/sections.hpp"
@@ -102,7 +104,9 @@ Markup provenance_section(const ReportInput& input) {
     out.html += concat({"<p>command <code>", escape(first.command), "</code> \u00B7 seed ", std::to_string(first.seed),
                         " \u00B7 version ", escape(first.program_version), "</p>\n"});
     if (!first.parameters.empty()) {
-      out += details("parameters", {concat({"<pre>", escape(first.parameters), "</pre>\n"})});
+      const Markup parameters{concat({"<pre>", escape(first.parameters), "</pre>\n"})};
+      constexpr std::size_t kLong = 400;
+      out += first.parameters.size() < kLong ? parameters : details("parameters", parameters);
     }
     out += inputs_of(batch.items);
     out.html += "</div>\n";

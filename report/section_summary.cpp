@@ -25,8 +25,9 @@ std::string recordings_words(const DemonstrationPart& part) {
 std::string synergy_words(const SynergyPart& part) {
   std::string words;
   for (const auto& item : part.groups) {
-    words +=
-        concat({words.empty() ? "" : ", ", item.group.name, ": ", std::to_string(item.group.box.half_width.size())});
+    const bool common = item.group.phase == "pre-grasp";
+    words += concat({words.empty() ? "" : ", ", common ? "" : part.grouped_by, common ? "" : " ", item.group.name, ": ",
+                     std::to_string(item.group.box.half_width.size())});
   }
   return words.empty() ? std::string("none") : words;
 }

@@ -234,4 +234,40 @@ BoundingVolumeTree::Nearest BoundingVolumeTree::nearest(const Eigen::Vector3d& p
   return best;
 }
 
+double BoundingVolumeTree::least(const BoxBound& bound, const TriangleDistance& distance) const {
+  struct Entry {
+    double bound;
+    int first;
+    int count;
+  };
+  double best = kInfinity;
+  std::vector<Entry> stack{{0.0, 0, 0}};
+  while (!stack.empty()) {
+    const Entry entry = stack.back();
+    stack.pop_back();
+    if (entry.bound >= best) continue;
+    if (entry.count > 0) {
+      for (int i = entry.first; i < entry.first + entry.count; ++i) {
+        const Slot& slot = slots_[static_cast<std::size_t>(i)];
+        best = std::min(best, distance(slot.a, slot.ab, slot.ac));
+      }
+      continue;
+    }
+    const Node& node = nodes_[static_cast<std::size_t>(entry.first)];
+    std::array<Entry, 2> children{};
+    for (std::size_t child = 0; child < 2; ++child) {
+      const Eigen::Vector3d lower = node.lower.row(static_cast<Eigen::Index>(child)).transpose();
+      const Eigen::Vector3d upper = node.upper.row(static_cast<Eigen::Index>(child)).transpose();
+      const bool empty = node.count[child] < 0;
+      children[child] = {empty ? kInfinity : bound(0.5 * (lower + upper), 0.5 * (upper - lower)), node.first[child],
+                         node.count[child]};
+    }
+    if (children[0].bound < children[1].bound) std::swap(children[0], children[1]);
+    for (const Entry& child : children) {
+      if (child.bound < best) stack.push_back(child);
+    }
+  }
+  return best;
+}
+
 }  // namespace opponens::robot

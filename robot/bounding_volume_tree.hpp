@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -40,6 +41,15 @@ class BoundingVolumeTree {
 
   /// Exact nearest point of the surface; of equally near triangles the one met first, which is always the same.
   Nearest nearest(const Eigen::Vector3d& p) const;
+
+  /// A lower bound of the distance from the box with these centre and half extents to something, m.
+  using BoxBound = std::function<double(const Eigen::Vector3d& center, const Eigen::Vector3d& half_extents)>;
+  /// Distance from the triangle (a, a + ab, a + ac) to it, m.
+  using TriangleDistance =
+      std::function<double(const Eigen::Vector3d& a, const Eigen::Vector3d& ab, const Eigen::Vector3d& ac)>;
+
+  /// Least distance of any triangle; those whose boxes are too far away are not asked.
+  double least(const BoxBound& bound, const TriangleDistance& distance) const;
 
  private:
   struct Item {

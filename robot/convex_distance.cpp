@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/require.hpp"
+#include "robot/bounding_volume_tree.hpp"
 
 namespace opponens::robot {
 
@@ -14,40 +15,40 @@ namespace {
 
 constexpr int kMaxIterations = 20000;
 
-/// Nearest point of the shape to p, in its own frame.
-Eigen::Vector3d project(const Shape& shape, const Eigen::Vector3d& p) {
-  if (const auto* box = std::get_if<Box>(&shape)) return p.cwiseMax(-0.5 * box->size).cwiseMin(0.5 * box->size);
-  if (const auto* sphere = std::get_if<Sphere>(&shape)) {
-    const double norm = p.norm();
-    return norm > sphere->radius ? Eigen::Vector3d(p * (sphere->radius / norm)) : p;
-  }
-  const auto& cylinder = std::get<Cylinder>(shape);
+struct Triangle {
+  Eigen::Vector3d a, ab, ac;
+};
+
+Eigen::Vector3d project(const Box& box, const Eigen::Vector3d& p) {
+  return p.cwiseMax(-0.5 * box.size).cwiseMin(0.5 * box.size);
+}
+Eigen::Vector3d project(const Sphere& sphere, const Eigen::Vector3d& p) {
+  const double norm = p.norm();
+  return norm > sphere.radius ? Eigen::Vector3d(p * (sphere.radius / norm)) : p;
+}
+Eigen::Vector3d project(const Cylinder& cylinder, const Eigen::Vector3d& p) {
   Eigen::Vector3d q = p;
   const double norm = p.head<2>().norm();
   if (norm > cylinder.radius) q.head<2>() *= cylinder.radius / norm;
   q.z() = std::clamp(q.z(), -0.5 * cylinder.length, 0.5 * cylinder.length);
   return q;
 }
+Eigen::Vector3d project(const Triangle& t, const Eigen::Vector3d& p) {
+  return nearest_on_triangle(t.a, t.ab, t.ac, p).point;
+}
 
 /// max n . x over the shape, in its own frame.
-double support(const Shape& shape, const Eigen::Vector3d& n) {
-  if (const auto* box = std::get_if<Box>(&shape)) return 0.5 * box->size.dot(n.cwiseAbs());
-  if (const auto* sphere = std::get_if<Sphere>(&shape)) return sphere->radius * n.norm();
-  const auto& cylinder = std::get<Cylinder>(shape);
+double support(const Box& box, const Eigen::Vector3d& n) { return 0.5 * box.size.dot(n.cwiseAbs()); }
+double support(const Sphere& sphere, const Eigen::Vector3d& n) { return sphere.radius * n.norm(); }
+double support(const Cylinder& cylinder, const Eigen::Vector3d& n) {
   return cylinder.radius * n.head<2>().norm() + 0.5 * cylinder.length * std::abs(n.z());
 }
 
-}  // namespace
-
-ConvexDistance convex_distance(const Shape& a, const Eigen::Isometry3d& X_WA, const Shape& b,
-                               const Eigen::Isometry3d& X_WB, double tolerance) {
-  require(!std::holds_alternative<std::shared_ptr<const TriangleMesh>>(a) &&
-              !std::holds_alternative<std::shared_ptr<const TriangleMesh>>(b),
-          "convex_distance: meshes are not convex");
-  // Everything in the frame of A; y is the point of B, z the extrapolated one.
-  const Eigen::Isometry3d X_AB = X_WA.inverse(Eigen::Isometry) * X_WB;
+/// Distance between convex sets; A in its own frame, B at X_AB. y is the point of B, z the extrapolated one.
+template <typename A, typename B>
+ConvexDistance distance_between(const A& a, const B& b, const Eigen::Isometry3d& X_AB, double tolerance) {
   const Eigen::Isometry3d X_BA = X_AB.inverse(Eigen::Isometry);
-  Eigen::Vector3d y = X_AB * project(b, X_BA * Eigen::Vector3d::Zero());
+  Eigen::Vector3d y = X_AB * project(b, X_BA * project(a, X_AB.translation()));
   Eigen::Vector3d z = y;
   double momentum = 1.0;
   ConvexDistance result{0.0, std::numeric_limits<double>::infinity(), 0};
@@ -70,6 +71,33 @@ ConvexDistance convex_distance(const Shape& a, const Eigen::Isometry3d& X_WA, co
     y = y_next;
   }
   return result;
+}
+
+/// Calls use with the primitive that a shape holds.
+template <typename Use>
+ConvexDistance with_primitive(const Shape& shape, const Use& use) {
+  if (const auto* box = std::get_if<Box>(&shape)) return use(*box);
+  if (const auto* sphere = std::get_if<Sphere>(&shape)) return use(*sphere);
+  const auto* cylinder = std::get_if<Cylinder>(&shape);
+  require(cylinder != nullptr, "convex_distance: meshes are not convex");
+  return use(*cylinder);
+}
+
+}  // namespace
+
+ConvexDistance convex_distance(const Shape& a, const Eigen::Isometry3d& X_WA, const Shape& b,
+                               const Eigen::Isometry3d& X_WB, double tolerance) {
+  const Eigen::Isometry3d X_AB = X_WA.inverse(Eigen::Isometry) * X_WB;
+  return with_primitive(a, [&](const auto& A) {
+    return with_primitive(b, [&](const auto& B) { return distance_between(A, B, X_AB, tolerance); });
+  });
+}
+
+ConvexDistance triangle_distance(const Eigen::Vector3d& a, const Eigen::Vector3d& ab, const Eigen::Vector3d& ac,
+                                 const Shape& shape, const Eigen::Isometry3d& X_MS, double tolerance) {
+  return with_primitive(shape, [&](const auto& S) {
+    return distance_between(Triangle{a, ab, ac}, S, X_MS, tolerance);
+  });
 }
 
 }  // namespace opponens::robot

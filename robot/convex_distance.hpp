@@ -23,4 +23,8 @@ struct ConvexDistance {
 ConvexDistance convex_distance(const Shape& a, const Eigen::Isometry3d& X_WA, const Shape& b,
                                const Eigen::Isometry3d& X_WB, double tolerance = 1e-7);
 
+/// The same between the triangle (a, a + ab, a + ac) in the frame M and a primitive.
+ConvexDistance triangle_distance(const Eigen::Vector3d& a, const Eigen::Vector3d& ab, const Eigen::Vector3d& ac,
+                                 const Shape& shape, const Eigen::Isometry3d& X_MS, double tolerance = 1e-7);
+
 }  // namespace opponens::robot

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/fingertip_fit.hpp"
 
+#include <cmath>
 #include <utility>
 
 #include <ceres/ceres.h>
@@ -11,75 +12,213 @@ namespace opponens::robot {
 namespace {
 
 constexpr double kCentimetres = 100.0;  ///< residuals are in cm, so that weights in rad compare with them
+constexpr int kRounds = 20;             ///< of the active set; two or three are usual
 
-/// Residuals 100 (p(q) - p*) of one tip in one sample; the Jacobian is RobotModel::point_jacobian's.
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// Residuals whose squares sum to |p - p*|^2, for tip p and target p*, and their derivative along a motion of p. Where
+/// the target is far out of reach, Gauss-Newton on p - p* itself overshoots: the circle that the tip runs on bends
+/// towards the target. In cylinder coordinates about the axis of the first fitted joint,
+///   |p - p*|^2 = (r - r*)^2 + (z - z*)^2 + 4 r r* sin^2((phi - phi*) / 2),
+/// only the last term changes with that joint, and it can vanish.
+class TipError {
+ public:
+  TipError(const Eigen::Vector3d& origin, const Eigen::Vector3d& axis, const Eigen::Vector3d& p,
+           const Eigen::Vector3d& target)
+      : axis_(axis), plain_(p - target) {
+    const Eigen::Vector3d flat = p - origin - axis.dot(p - origin) * axis;
+    const Eigen::Vector3d flat_target = target - origin - axis.dot(target - origin) * axis;
+    const double r = flat.norm();
+    const double r_target = flat_target.norm();
+    cylindrical_ = r > kOnAxis && r_target > kOnAxis;
+    if (!cylindrical_) return;
+    along_ = flat / r;
+    around_ = axis.cross(along_);
+    const double half = 0.5 * std::atan2(axis.dot(flat_target.cross(flat)), flat_target.dot(flat));  // (phi - phi*) / 2
+    const double root = std::sqrt(r_target / r);
+    residual_ = {r - r_target, axis.dot(p - target), 2.0 * root * r * std::sin(half)};
+    slope_ = root * (std::sin(half) * along_ + std::cos(half) * around_);
+  }
+
+  Eigen::Vector3d residual() const { return cylindrical_ ? residual_ : plain_; }
+  Eigen::Vector3d derivative(const Eigen::Vector3d& dp) const {
+    return cylindrical_ ? Eigen::Vector3d(along_.dot(dp), axis_.dot(dp), slope_.dot(dp)) : dp;
+  }
+
+ private:
+  static constexpr double kOnAxis = 1e-6;  ///< m: there the plain difference, of the same square, is used
+  Eigen::Vector3d axis_;
+  Eigen::Vector3d plain_;
+  bool cylindrical_ = false;
+  Eigen::Vector3d along_;
+  Eigen::Vector3d around_;
+  Eigen::Vector3d residual_;
+  Eigen::Vector3d slope_;
+};
+
+/// 100 TipError of all tips in one sample, x the fitted joints; Jacobian by RobotModel::point_jacobian.
 class TipCost : public ceres::CostFunction {
  public:
-  TipCost(const RobotModel& hand, const TipTarget& target, const Eigen::MatrixXd& q, Eigen::Index sample)
-      : hand_(hand), target_(target), q_(q.col(sample)), sample_(sample) {
-    mutable_parameter_block_sizes()->assign(target.joints.size(), 1);
-    set_num_residuals(3);
+  TipCost(const RobotModel& hand, const std::vector<TipTarget>& targets, const std::vector<int>& fitted,
+          Eigen::VectorXd q, Eigen::Index sample)
+      : hand_(hand), targets_(targets), fitted_(fitted), q_(std::move(q)), sample_(sample) {
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(fitted.size()));
+    set_num_residuals(3 * static_cast<int>(targets.size()));
   }
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    for (std::size_t i = 0; i < target_.joints.size(); ++i) q_[target_.joints[i]] = *parameters[i];
+    const auto size = static_cast<Eigen::Index>(fitted_.size());
+    for (Eigen::Index i = 0; i < size; ++i) q_[fitted_[static_cast<std::size_t>(i)]] = parameters[0][i];
     hand_.link_poses(q_, X_RL_);
-    const Eigen::Isometry3d& X_RP = X_RL_[static_cast<std::size_t>(hand_.palm())];
-    const Eigen::Vector3d p_R = X_RL_[static_cast<std::size_t>(target_.finger.link)] * target_.finger.p_L;
-    Eigen::Map<Eigen::Vector3d> error(residuals);
-    error = kCentimetres * (X_RP.linear().transpose() * (p_R - X_RP.translation()) - target_.path.col(sample_));
-    if (!jacobians) return true;
-    const Eigen::Matrix3Xd J_R = hand_.point_jacobian(X_RL_, target_.finger.link, p_R);
-    for (std::size_t i = 0; i < target_.joints.size(); ++i) {
-      if (!jacobians[i]) continue;
-      Eigen::Map<Eigen::Vector3d>(jacobians[i]) =
-          kCentimetres * (X_RP.linear().transpose() * J_R.col(target_.joints[i]));
+    const Eigen::Isometry3d X_PR = X_RL_[static_cast<std::size_t>(hand_.palm())].inverse();
+    const bool wants_jacobian = jacobians && jacobians[0];
+    for (std::size_t f = 0; f < targets_.size(); ++f) {
+      const TipTarget& target = targets_[f];
+      const Eigen::Vector3d p_R = X_RL_[static_cast<std::size_t>(target.finger.link)] * target.finger.p_L;
+      const Eigen::Isometry3d X_PC = X_PR * X_RL_[static_cast<std::size_t>(target.turning_link)];
+      const TipError error(X_PC.translation(), X_PC.linear() * target.turning_axis, X_PR * p_R,
+                           target.path.col(sample_));
+      Eigen::Map<Eigen::Vector3d> rows(residuals + 3 * f);
+      rows = kCentimetres * error.residual();
+      if (!wants_jacobian) continue;
+      const Eigen::Matrix3Xd J_R = hand_.point_jacobian(X_RL_, target.finger.link, p_R);
+      Eigen::Map<RowMajor> J(jacobians[0] + 3 * f * fitted_.size(), 3, size);
+      for (Eigen::Index i = 0; i < size; ++i) {
+        const Eigen::Vector3d dp = X_PR.linear() * J_R.col(fitted_[static_cast<std::size_t>(i)]);
+        J.col(i) = kCentimetres * error.derivative(dp);
+      }
     }
     return true;
   }
 
  private:
   const RobotModel& hand_;
-  const TipTarget& target_;
+  const std::vector<TipTarget>& targets_;
+  const std::vector<int>& fitted_;
   mutable Eigen::VectorXd q_;  // scratch: one thread evaluates (Solver::Options::num_threads = 1)
   mutable std::vector<Eigen::Isometry3d> X_RL_;
   Eigen::Index sample_;
 };
 
-/// Residual weight (b - a), or weight (a - rest) with one joint position.
+/// Residuals weight (b - a) of neighbouring samples, or weight (a - rest) of one.
 class DifferenceCost : public ceres::CostFunction {
  public:
-  explicit DifferenceCost(double weight) : weight_(weight) {
-    mutable_parameter_block_sizes()->assign(2, 1);
-    set_num_residuals(1);
+  DifferenceCost(double weight, int size) : weight_(weight) {
+    mutable_parameter_block_sizes()->assign(2, size);
+    set_num_residuals(size);
   }
-  DifferenceCost(double weight, double rest) : weight_(-weight), rest_(rest) {
-    mutable_parameter_block_sizes()->assign(1, 1);
-    set_num_residuals(1);
+  DifferenceCost(double weight, Eigen::VectorXd rest) : weight_(-weight), rest_(std::move(rest)) {
+    mutable_parameter_block_sizes()->assign(1, static_cast<int>(rest_.size()));
+    set_num_residuals(static_cast<int>(rest_.size()));
   }
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    const bool pair = parameter_block_sizes().size() == 2;
-    residuals[0] = weight_ * ((pair ? *parameters[1] : rest_) - *parameters[0]);
-    if (jacobians && jacobians[0]) jacobians[0][0] = -weight_;
-    if (jacobians && pair && jacobians[1]) jacobians[1][0] = weight_;
+    const int size = num_residuals();
+    const std::size_t blocks = parameter_block_sizes().size();
+    const double* end = blocks == 2 ? parameters[1] : rest_.data();
+    for (int i = 0; i < size; ++i) residuals[i] = weight_ * (end[i] - parameters[0][i]);
+    for (std::size_t block = 0; jacobians && block < blocks; ++block) {
+      if (!jacobians[block]) continue;
+      Eigen::Map<RowMajor> J(jacobians[block], size, size);
+      J = (block == 0 ? -weight_ : weight_) * Eigen::MatrixXd::Identity(size, size);
+    }
     return true;
   }
 
  private:
   double weight_;
-  double rest_ = 0.0;
+  Eigen::VectorXd rest_;
 };
 
-ceres::Solver::Options solver_options(const RetargetSettings& settings) {
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-  options.num_threads = 1;
-  options.max_num_iterations = settings.max_iterations;
-  options.function_tolerance = 1e-8;
-  options.logging_type = ceres::SILENT;
-  return options;
-}
+/// The fitted joints of all samples as one Ceres problem with bounds. Ceres clips steps to the bounds but solves for
+/// them as if there were none, which creeps where many samples lie on a bound; so positions that the gradient pushes
+/// out are held there in turn (active set), and the rest is solved.
+class FingertipProblem {
+ public:
+  FingertipProblem(const RobotModel& hand, const std::vector<TipTarget>& targets, const std::vector<int>& fitted,
+                   const RetargetSettings& settings, const Eigen::MatrixXd& q)
+      : lower_(hand.lower()(fitted)), upper_(hand.upper()(fitted)), x_(q(fitted, Eigen::all)) {
+    const int size = static_cast<int>(fitted.size());
+    for (Eigen::Index t = 0; t < x_.cols(); ++t) {
+      problem_.AddParameterBlock(x_.col(t).data(), size);
+      for (int i = 0; i < size; ++i) {
+        problem_.SetParameterLowerBound(x_.col(t).data(), i, lower_[i]);
+        problem_.SetParameterUpperBound(x_.col(t).data(), i, upper_[i]);
+      }
+      blocks_.push_back(x_.col(t).data());
+      // The problem owns its cost functions.
+      problem_.AddResidualBlock(new TipCost(hand, targets, fitted, q.col(t), t), nullptr, blocks_.back());
+      problem_.AddResidualBlock(new DifferenceCost(settings.rest, 0.5 * (lower_ + upper_)), nullptr, blocks_.back());
+      if (t == 0) continue;
+      problem_.AddResidualBlock(new DifferenceCost(settings.smoothness, size), nullptr, x_.col(t - 1).data(),
+                                blocks_.back());
+    }
+    options_.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+    options_.num_threads = 1;
+    options_.logging_type = ceres::SILENT;
+    options_.function_tolerance = 1e-9;
+  }
+
+  /// Whether the tolerance was met within the iterations of the settings; otherwise the solver's reason.
+  std::optional<std::string> solve(int max_iterations) {
+    Eigen::MatrixXi held = held_positions();
+    ceres::Solver::Summary summary;
+    for (int round = 0; round < kRounds && max_iterations > 0; ++round) {
+      hold(held);
+      options_.max_num_iterations = max_iterations;
+      ceres::Solve(options_, &problem_, &summary);
+      if (summary.termination_type == ceres::FAILURE) return summary.message;
+      max_iterations -= std::max(1, static_cast<int>(summary.iterations.size()) - 1);
+      const Eigen::MatrixXi next = held_positions();
+      if (next == held && summary.termination_type == ceres::CONVERGENCE) return std::nullopt;
+      held = next;
+    }
+    return "the iteration limit was reached: " + summary.message;
+  }
+
+  const Eigen::MatrixXd& positions() const { return x_; }
+
+ private:
+  /// 1 where a position is on a bound and the cost falls beyond it.
+  Eigen::MatrixXi held_positions() {
+    hold(Eigen::MatrixXi::Zero(x_.rows(), x_.cols()));
+    ceres::Problem::EvaluateOptions evaluate;
+    evaluate.parameter_blocks = blocks_;
+    std::vector<double> values;
+    problem_.Evaluate(evaluate, nullptr, nullptr, &values, nullptr);
+    const Eigen::Map<const Eigen::MatrixXd> gradient(values.data(), x_.rows(), x_.cols());
+    Eigen::MatrixXi held(x_.rows(), x_.cols());
+    for (Eigen::Index t = 0; t < x_.cols(); ++t) {
+      for (Eigen::Index i = 0; i < x_.rows(); ++i) {
+        const bool out =
+            (x_(i, t) <= lower_[i] && gradient(i, t) > 0.0) || (x_(i, t) >= upper_[i] && gradient(i, t) < 0.0);
+        held(i, t) = out ? 1 : 0;
+      }
+    }
+    return held;
+  }
+
+  void hold(const Eigen::MatrixXi& held) {
+    for (Eigen::Index t = 0; t < x_.cols(); ++t) {
+      double* block = blocks_[static_cast<std::size_t>(t)];
+      std::vector<int> constant;
+      for (int i = 0; i < x_.rows(); ++i) {
+        if (held(i, t)) constant.push_back(i);
+      }
+      const bool whole = static_cast<Eigen::Index>(constant.size()) == x_.rows();
+      const bool none = constant.empty() || whole;
+      problem_.SetManifold(block, none ? nullptr : new ceres::SubsetManifold(static_cast<int>(x_.rows()), constant));
+      whole ? problem_.SetParameterBlockConstant(block) : problem_.SetParameterBlockVariable(block);
+    }
+  }
+
+  Eigen::VectorXd lower_;
+  Eigen::VectorXd upper_;
+  Eigen::MatrixXd x_;  ///< [fitted x T]
+  std::vector<double*> blocks_;
+  ceres::Problem problem_;
+  ceres::Solver::Options options_;
+};
 
 }  // namespace
 
@@ -87,35 +226,12 @@ std::optional<Failure> fit_fingertips(const RobotModel& hand, const std::vector<
                                       const std::vector<int>& fitted, const RetargetSettings& settings,
                                       Eigen::MatrixXd& q) {
   if (fitted.empty() || q.cols() == 0) return std::nullopt;
-  ceres::Problem problem;
-  Eigen::MatrixXd start = q;  // cost functions copy the joints that are not fitted from here
-  for (const int joint : fitted) {
-    for (Eigen::Index t = 0; t < q.cols(); ++t) {
-      double* position = &q(joint, t);
-      problem.AddParameterBlock(position, 1);
-      problem.SetParameterLowerBound(position, 0, hand.lower()[joint]);
-      problem.SetParameterUpperBound(position, 0, hand.upper()[joint]);
-      if (settings.rest > 0.0) {
-        const double middle = 0.5 * (hand.lower()[joint] + hand.upper()[joint]);
-        problem.AddResidualBlock(new DifferenceCost(settings.rest, middle), nullptr, position);
-      }
-      if (settings.smoothness > 0.0 && t > 0) {
-        problem.AddResidualBlock(new DifferenceCost(settings.smoothness), nullptr, &q(joint, t - 1), position);
-      }
-    }
+  FingertipProblem problem(hand, targets, fitted, settings, q);
+  if (const auto reason = problem.solve(settings.max_iterations)) {
+    return Failure{FailureCode::not_converged, "fingertip fit: " + *reason};
   }
-  for (const TipTarget& target : targets) {
-    if (target.joints.empty()) continue;
-    for (Eigen::Index t = 0; t < q.cols(); ++t) {
-      std::vector<double*> positions;
-      for (const int joint : target.joints) positions.push_back(&q(joint, t));
-      problem.AddResidualBlock(new TipCost(hand, target, start, t), nullptr, positions);  // the problem owns it
-    }
-  }
-  ceres::Solver::Summary summary;
-  ceres::Solve(solver_options(settings), &problem, &summary);
-  if (summary.termination_type == ceres::CONVERGENCE) return std::nullopt;
-  return Failure{FailureCode::not_converged, "fingertip fit: " + summary.message};
+  q(fitted, Eigen::all) = problem.positions();
+  return std::nullopt;
 }
 
 }  // namespace opponens::robot

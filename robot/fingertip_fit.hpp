@@ -16,6 +16,8 @@ struct TipTarget {
   Finger finger;
   std::vector<int> joints;  ///< indices into q of the fitted joints that move it
   Eigen::Matrix3Xd path;    ///< [3 x T] m, palm frame
+  int turning_link = 0;     ///< link that the first of them (from the palm) turns; its origin lies on the axis
+  Eigen::Vector3d turning_axis = Eigen::Vector3d::UnitZ();  ///< of that joint, unit, in that link
 };
 
 /// Moves the fitted joints' rows of q [d x T] so that the tips follow their targets (the problem of retarget()). Starts

@@ -29,6 +29,8 @@ namespace {
 
 constexpr double kLeastSeparation = 1e-9;  ///< m
 
+constexpr double kBoundTolerance = 1e-3;  ///< m
+
 /// A closed component that fills less of its box than this is a sheet counted there and back, not a solid.
 constexpr double kLeastFilling = 1e-9;
 
@@ -191,6 +193,21 @@ bool surfaces_meet(const CollisionShape& a, const Eigen::Isometry3d& X_WA, const
   return result.isCollision();
 }
 
+/// Distance of a primitive's surface to a mesh's, within 1e-7 below.
+double mesh_primitive_gap(const CollisionShape& mesh, const Eigen::Isometry3d& X_WM, const Shape& shape,
+                          const Eigen::Isometry3d& X_WS) {
+  const Eigen::Isometry3d X_MS = X_WM.inverse(Eigen::Isometry) * X_WS;
+  return mesh.data().triangles->least(
+      [&](const Eigen::Vector3d& center, const Eigen::Vector3d& half_extents) {
+        const Eigen::Isometry3d X_MB(Eigen::Translation3d{center});
+        // The bound is valid at any tolerance; a coarse one is found in a few steps.
+        return convex_distance(Box{2.0 * half_extents}, X_MB, shape, X_MS, kBoundTolerance).lower;
+      },
+      [&](const Eigen::Vector3d& a, const Eigen::Vector3d& ab, const Eigen::Vector3d& ac) {
+        return triangle_distance(a, ab, ac, shape, X_MS).lower;
+      });
+}
+
 }  // namespace
 
 CollisionShape::CollisionShape(const Shape& shape) {
@@ -213,13 +230,22 @@ bool intersect(const CollisionShape& a, const Eigen::Isometry3d& X_WA, const Col
 double separation(const CollisionShape& a, const Eigen::Isometry3d& X_WA, const CollisionShape& b,
                   const Eigen::Isometry3d& X_WB) {
   if (intersect(a, X_WA, b, X_WB)) return 0.0;
-  if (a.data().triangles == nullptr && b.data().triangles == nullptr) {
-    return std::max(convex_distance(a.data().shape, X_WA, b.data().shape, X_WB).lower, kLeastSeparation);
+  const bool mesh_a = a.data().triangles != nullptr;
+  const bool mesh_b = b.data().triangles != nullptr;
+  double distance = 0.0;
+  if (const std::optional<double> gap = sphere_mesh_gap(a, X_WA, b, X_WB)) {
+    distance = *gap;
+  } else if (!mesh_a && !mesh_b) {
+    distance = convex_distance(a.data().shape, X_WA, b.data().shape, X_WB).lower;
+  } else if (!mesh_b) {
+    distance = mesh_primitive_gap(a, X_WA, b.data().shape, X_WB);
+  } else if (!mesh_a) {
+    distance = mesh_primitive_gap(b, X_WB, a.data().shape, X_WA);
+  } else {
+    fcl::DistanceResultd result;
+    distance = fcl::distance(a.data().geometry.get(), X_WA, b.data().geometry.get(), X_WB,
+                             fcl::DistanceRequestd(false, false), result);
   }
-  if (const std::optional<double> gap = sphere_mesh_gap(a, X_WA, b, X_WB)) return std::max(*gap, kLeastSeparation);
-  const fcl::DistanceRequestd request(false, false);
-  fcl::DistanceResultd result;
-  const double distance = fcl::distance(a.data().geometry.get(), X_WA, b.data().geometry.get(), X_WB, request, result);
   return std::max(distance, kLeastSeparation);
 }
 

@@ -43,8 +43,9 @@ bool intersect(const CollisionShape& a, const Eigen::Isometry3d& X_WA, const Col
                const Eigen::Isometry3d& X_WB);
 
 /// Distance between two solids, m; 0 when they intersect, and at least 1e-9 when they do not (a distance can round to
-/// nothing where the collision test still tells the two apart). Primitives: a proven lower bound within 1e-7 m of the
-/// distance (convex_distance). A sphere and a mesh: exact. Other pairs with a mesh: fcl::distance.
+/// nothing where the collision test still tells the two apart). With a primitive: a proven lower bound within 1e-7 m of
+/// the distance (convex_distance; fcl::distance was seen to err by 24 mm for cylinders). A sphere and a mesh: exact.
+/// Two meshes: fcl::distance, which is exact for triangles.
 double separation(const CollisionShape& a, const Eigen::Isometry3d& X_WA, const CollisionShape& b,
                   const Eigen::Isometry3d& X_WB);
 

@@ -74,6 +74,23 @@ Result<std::vector<int>> fitted_joints(const RobotModel& hand, const HandMapping
   return fitted;
 }
 
+/// The first joint from the palm that is fitted and turns; the palm itself where there is none.
+void find_turning_link(const RobotModel& hand, TipTarget& target) {
+  target.turning_link = hand.palm();
+  for (int link = target.finger.link; link != hand.palm() && hand.links()[static_cast<std::size_t>(link)].joint >= 0;) {
+    const Joint& joint =
+        hand.description().joints[static_cast<std::size_t>(hand.links()[static_cast<std::size_t>(link)].joint)];
+    const bool fitted = std::any_of(target.joints.begin(), target.joints.end(), [&](int index) {
+      return hand.joint_names()[static_cast<std::size_t>(index)] == joint.name;
+    });
+    if (fitted && joint.type == JointType::revolute) {
+      target.turning_link = joint.child;
+      target.turning_axis = joint.axis;
+    }
+    link = joint.parent;
+  }
+}
+
 /// p* = b_r + (l_r / l_h) R (p_h - b_h) for every mapped tip.
 Result<std::vector<TipTarget>> tip_targets(const RobotModel& human, const Eigen::MatrixXd& q_human,
                                            const RobotModel& hand, const HandMapping& mapping,
@@ -91,6 +108,7 @@ Result<std::vector<TipTarget>> tip_targets(const RobotModel& human, const Eigen:
     const std::vector<int>& movers = target.finger.moved_by;
     std::copy_if(fitted.begin(), fitted.end(), std::back_inserter(target.joints),
                  [&](int joint) { return std::find(movers.begin(), movers.end(), joint) != movers.end(); });
+    find_turning_link(hand, target);
     targets.push_back(std::move(target));
   }
   for (const int joint : fitted) {

@@ -17,9 +17,9 @@ static_assert(std::is_same_v<hid_t, std::int64_t> && std::is_same_v<herr_t, int>
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-constexpr std::size_t kDeflateFrom = 512;     // values; below that a chunk index costs more than it saves
-constexpr hsize_t kChunkValues = 128 * 1024;  // 1 MB: libhdf5's default chunk cache holds it
-constexpr unsigned kDeflateLevel = 1;         // after shuffle, level 9 saves 2 % more on glove data at 6 times the cost
+constexpr std::size_t kDeflateFrom = 512;  // values; below that a chunk index costs more than it saves
+constexpr hsize_t kChunkValues = 131072;   // 1 MB: libhdf5's default chunk cache holds it
+constexpr unsigned kDeflateLevel = 1;      // after shuffle, level 9 saves 2 % more on glove data at 6 times the cost
 // libhdf5 refuses to open an image under the name of a file that exists; names in messages are shown without this.
 constexpr const char* kInMemory = " (in memory)";
 constexpr std::size_t kMemoryStep = 1U << 20U;  // bytes by which a file in memory grows

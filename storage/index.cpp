@@ -53,12 +53,13 @@ std::optional<std::vector<IndexEntry>> load_index(const std::filesystem::path& d
 bool save_index(const std::filesystem::path& directory, const std::vector<IndexEntry>& entries) {
   const json list = to_json(entries);
   const json document = {{"schema_version", kSchemaVersion}, {"entries", list}, {"sha256", sha256(list.dump())}};
+  // Not flushed to disk: after a power cut it may be empty or old, which its hash and list of files show.
   const std::string text = document.dump(1) + "\n";
   const std::filesystem::path temporary = directory / (".tmp-index-" + std::to_string(::getpid()));
   std::error_code error;
   std::filesystem::remove(temporary, error);
   try {
-    write_new_file(temporary, std::as_bytes(std::span(text)));
+    write_new_file(temporary, std::as_bytes(std::span(text)), Durable::no);
   } catch (const InputError&) {
     std::filesystem::remove(temporary, error);
     return false;

@@ -84,10 +84,10 @@ std::string read_file(const std::filesystem::path& path) {
   return bytes;
 }
 
-void write_new_file(const std::filesystem::path& path, std::span<const std::byte> bytes) {
+void write_new_file(const std::filesystem::path& path, std::span<const std::byte> bytes, Durable durable) {
   Descriptor file(path, O_WRONLY | O_CREAT | O_EXCL, "cannot create");
   write_all(file, bytes, path);
-  sync(file, path);
+  if (durable == Durable::yes) sync(file, path);
   file.close();
 }
 

@@ -18,8 +18,9 @@ namespace opponens::storage {
 
 std::string read_file(const std::filesystem::path& path);
 
-/// Creates path (it must not exist), writes all bytes and waits until the disk has them.
-void write_new_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
+/// Creates path (it must not exist) and writes all bytes; durable: waits until the disk has them.
+enum class Durable { no, yes };
+void write_new_file(const std::filesystem::path& path, std::span<const std::byte> bytes, Durable durable);
 
 /// Makes renames and removals inside directory durable.
 void sync_directory(const std::filesystem::path& directory);

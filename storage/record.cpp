@@ -118,7 +118,8 @@ void check_storable(const Record& record) {
     check_text(hash, label + ", provenance files");
   }
   for (const auto& [name, field] : record.fields) {
-    const std::string where = label + ", field '" + name + "'";
+    std::string where = label;
+    where.append(", field '").append(name).append("'");
     require(!name.empty(), [&] { return where + ": a field needs a name"; });
     check_text(name, where);
     require(!is_array(field) || (name != "." && name.find('/') == std::string::npos),

@@ -39,6 +39,7 @@ void create_store(const fs::path& directory) {
   std::error_code error;
   fs::create_directories(directory, error);
   if (error) throw InputError(directory.string() + ": cannot make the store: " + error.message());
+  if (::access(directory.c_str(), W_OK | X_OK) != 0) throw_errno("cannot write in the store", directory);
 }
 
 void require_store(const fs::path& directory) {
@@ -97,8 +98,8 @@ Store::Store(fs::path directory, bool create) : directory_(std::move(directory))
   if (!create) require_store(directory_);
   refresh();
   if (!create || fs::exists(directory_ / kIndexName)) return;
-  // An index marks an empty store as one; that it can be written shows early that the directory can be.
-  if (!save_index(directory_, index_)) throw_errno("cannot write in the store", directory_);
+  // An index marks an empty store as one.
+  if (!save_index(directory_, index_)) throw InputError(directory_.string() + ": cannot write the store's index");
 }
 
 Store::~Store() = default;
@@ -193,7 +194,7 @@ void Store::write_batches(const std::vector<Record>& records, const std::vector<
     const std::string name = batch_file_name(number++, bytes);
     const std::string temporary = kTemporaryPrefix + std::to_string(::getpid()) + "-" + name;
     cleanup.names.push_back(temporary);
-    write_new_file(directory_ / temporary, bytes);
+    write_new_file(directory_ / temporary, bytes, Durable::yes);
     renames.emplace_back(temporary, name);
     for (const std::size_t i : batch) {
       const Record& record = records[i];
@@ -253,7 +254,7 @@ std::vector<std::string> Store::check() const {
     if (sentence.find("the file is missing") != std::string::npos) sentences.push_back(sentence);
   }
   for (const auto& name : directory_entries(directory_)) {
-    if (!name.ends_with(".h5")) continue;
+    if (!name.ends_with(".h5") || name.starts_with(kTemporaryPrefix)) continue;
     const std::string path = (directory_ / name).string();
     if (batch_number(name) < 0) {
       sentences.push_back(path + ": not named like a batch file, so not read");

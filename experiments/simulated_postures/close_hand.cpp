@@ -187,12 +187,15 @@ Eigen::Isometry3d place_object(const Hand& hand, const opponens::robot::Shape& o
     X_PO.translation().x() += palm_surface(hand) + half_extent(object, out);
     // A bent palm arch puts the ring and little finger in front of the palm.
     push_clear(hand, object, poses, {"thumb", "index", "middle", "ring", "little"}, Eigen::Vector3d::UnitX(), X_PO);
-  } else if (spec.place == Place::tips) {
+  } else if (spec.place != Place::index) {
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     for (const std::string& name : spec.fingers) mean += tip(name) / static_cast<double>(spec.fingers.size());
-    X_PO.linear() = frame(spec.axis, mean - tip("thumb"));
+    const Eigen::Vector3d line = mean - tip("thumb");
+    const Eigen::Vector3d axis =
+        spec.place == Place::rim ? line.cross(Eigen::Vector3d::UnitY()).normalized() : spec.axis;
+    X_PO.linear() = frame(axis, line);
     X_PO.translation() += 0.5 * (tip("thumb") + mean);
-    push_clear(hand, object, poses, {"index", "middle", "ring", "little"}, (tip("thumb") - mean).normalized(), X_PO);
+    push_clear(hand, object, poses, {"index", "middle", "ring", "little"}, -line.normalized(), X_PO);
   } else {
     const Capsule& middle = hand.fingers.at("index").segments[1];
     const Eigen::Isometry3d X_PL = X_PW * poses[static_cast<std::size_t>(middle.link)];

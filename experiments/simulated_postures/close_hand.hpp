@@ -31,12 +31,12 @@ struct Hand {
   std::map<std::string, Finger> fingers;  ///< thumb, index, middle, ring, little
 };
 
-enum class Place { palm, tips, index };
+enum class Place { palm, tips, rim, index };
 
 struct GraspSpec {
   Place place = Place::palm;
   Eigen::Vector3d at = Eigen::Vector3d::Zero();          ///< m, palm frame
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitY();       ///< of the object's z, palm frame
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitY();       ///< of the object's z, palm frame; rim: not used
   Eigen::VectorXd start;                                 ///< [d] rad
   std::vector<std::string> fingers;                      ///< that close, before the thumb does
   Eigen::Vector3d rate = Eigen::Vector3d::Ones();        ///< degrees per step

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <iomanip>
 #include <iostream>
+#include <map>
 #include <numbers>
 #include <sstream>
 #include <stdexcept>
@@ -69,9 +70,9 @@ void set_channels(const Hand& hand, const YAML::Node& node, Eigen::VectorXd& q) 
 
 GraspSpec grasp_spec(const Hand& hand, const YAML::Node& node, const Eigen::VectorXd& open) {
   GraspSpec spec;
-  const auto place = node["place"].as<std::string>();
-  if (place != "palm" && place != "tips" && place != "index") throw std::runtime_error("config: place " + place);
-  spec.place = place == "palm" ? Place::palm : place == "tips" ? Place::tips : Place::index;
+  const std::map<std::string, Place> places{
+      {"palm", Place::palm}, {"tips", Place::tips}, {"rim", Place::rim}, {"index", Place::index}};
+  spec.place = places.at(node["place"].as<std::string>());
   spec.at = vector3(node["at"]);
   spec.axis = vector3(node["axis"]).normalized();
   spec.start = open;

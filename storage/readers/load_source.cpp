@@ -25,8 +25,8 @@ std::string joined(const std::vector<std::string>& names) {
 /// A YAML mapping whose keys must all be known, with errors that name file, line, key, value and expectation.
 class Section {
  public:
-  Section(YAML::Node node, std::filesystem::path file, std::string name, const std::vector<std::string>& keys)
-      : node_(std::move(node)), file_(std::move(file)), name_(std::move(name)) {
+  Section(const YAML::Node& node, std::filesystem::path file, std::string name, const std::vector<std::string>& keys)
+      : node_(node), file_(std::move(file)), name_(std::move(name)) {
     if (!node_.IsMap()) fail(node_, name_.empty() ? "the document" : name_, "a mapping with the keys " + joined(keys));
     std::set<std::string> seen;
     for (const auto& entry : node_) {

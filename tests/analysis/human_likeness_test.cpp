@@ -37,7 +37,7 @@ TEST(HumanLikeness, Null) {
 
 TEST(HumanLikeness, BoundedAndUnchangedBySubdivisionReversalAndScale) {
   for (int trial = 0; trial < 100; ++trial) {
-    Rng rng = stream(11, "hl/" + std::to_string(trial));
+    Rng rng = test::numbered_stream(11, "hl/", trial);
     const LikenessReference reference{"random", moments(test::normal_matrix(50, 5, rng)).covariance};
     const Eigen::MatrixXd q = test::normal_matrix(6, 5, rng);
     const double value = human_likeness(q, reference).value();

@@ -101,7 +101,7 @@ TEST(Bhattacharyya, BoundedAndOneForEqualSets) {
   const Pair pair = planar_pair();
   EXPECT_NEAR(bhattacharyya_coefficient(pair.a, pair.a, 0.0).value(), 1.0, 1e-14);
   for (int trial = 0; trial < 100; ++trial) {
-    Rng rng = stream(6, "bounded/" + std::to_string(trial));
+    Rng rng = test::numbered_stream(6, "bounded/", trial);
     const auto a = moments(test::normal_matrix(30, 4, rng));
     const auto b = moments(test::normal_matrix(30, 4, rng) * rng.uniform(0.1, 3.0));
     const double ab = bhattacharyya_coefficient(a, b, 0.0).value();

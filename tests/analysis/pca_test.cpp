@@ -42,7 +42,7 @@ TEST(PrincipalAxes, EqualNumpysSvd) {
 
 TEST(PrincipalAxes, Invariants) {
   for (int trial = 0; trial < 100; ++trial) {
-    Rng rng = stream(7, "pca/" + std::to_string(trial));
+    Rng rng = test::numbered_stream(7, "pca/", trial);
     const int n = 1 + trial % 16;
     const SampleStatistics s = moments(test::normal_matrix(3 + trial, n, rng) * test::normal_matrix(n, n, rng));
     const SynergyBasis basis = principal_axes(s);
@@ -50,7 +50,7 @@ TEST(PrincipalAxes, Invariants) {
     EXPECT_TRUE((basis.axes * basis.variance.asDiagonal() * basis.axes.transpose()).isApprox(s.covariance, 1e-11));
     EXPECT_GE(basis.variance.minCoeff(), 0.0);
     for (int i = 0; i < n; ++i) {
-      if (i > 0) EXPECT_GE(basis.variance[i - 1], basis.variance[i]) << trial;
+      EXPECT_GE(basis.variance[std::max(0, i - 1)], basis.variance[i]) << trial;
       Eigen::Index largest = 0;
       basis.axes.col(i).cwiseAbs().maxCoeff(&largest);
       EXPECT_GT(basis.axes(largest, i), 0.0) << trial;

@@ -18,7 +18,7 @@ using test::two_phases;
 
 TEST(TransitionCurves, EqualNaiveRecomputation) {
   Rng rng = stream(12, "curves");
-  const Demonstration demonstration = two_phases(90, 16, 0.45, 0.01, rng);
+  const Demonstration demonstration = two_phases(90, 16, 0.45, 0.03, rng);
   const TransitionSettings settings;
   const TransitionCurves curves = transition_curves(demonstration, settings).value();
   ASSERT_EQ(curves.kept.size(), 16u);

@@ -93,7 +93,7 @@ TEST(EffectiveSubspace, NamesConstantAndDependentChannels) {
 
 TEST(EffectiveSubspace, KeptChannelsAreIndependentAndSpanTheRest) {
   for (int trial = 0; trial < 50; ++trial) {
-    Rng rng = stream(5, "span/" + std::to_string(trial));
+    Rng rng = test::numbered_stream(5, "span/", trial);
     const int rank = 1 + trial % 6;
     const Eigen::MatrixXd q = normal_matrix(100, rank, rng) * normal_matrix(rank, 7, rng);
     const SampleStatistics s = moments(q);

@@ -26,6 +26,11 @@ inline Eigen::VectorXd vector(const YAML::Node& node) {
   return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
+/// One stream per trial, so that a failing trial can be repeated alone.
+inline Rng numbered_stream(std::uint64_t seed, std::string name, int number) {
+  return stream(seed, name.append(std::to_string(number)));
+}
+
 /// models/human/grasp_types.yaml as a SimulationModel.
 inline SimulationModel human_model() {
   const YAML::Node file = YAML::LoadFile(std::string(OPPONENS_SOURCE_DIR) + "/models/human/grasp_types.yaml");
@@ -53,7 +58,7 @@ inline Demonstration recording(const std::string& id, const Eigen::MatrixXd& q) 
   result.id = id;
   result.q_h = q;
   result.time = Eigen::VectorXd::LinSpaced(q.rows(), 0.0, 0.02 * static_cast<double>(q.rows() - 1));
-  for (Eigen::Index j = 0; j < q.cols(); ++j) result.joint_names.push_back("j" + std::to_string(j));
+  for (Eigen::Index j = 0; j < q.cols(); ++j) result.joint_names.push_back(std::string(1, static_cast<char>('a' + j)));
   return result;
 }
 

@@ -55,7 +55,7 @@ struct Case {
 };
 
 Case random_case(int trial) {
-  Rng rng = stream(9, "box/" + std::to_string(trial));
+  Rng rng = test::numbered_stream(9, "box/", trial);
   const int n = 2 + trial % 15;
   Eigen::VectorXd scale(n);
   for (double& s : scale) s = rng.uniform(0.5, 2.0);
@@ -73,7 +73,7 @@ TEST(Project, IdempotentInsideAndNearest) {
     EXPECT_LT((project(box, p) - p).norm(), 1e-12 * (1.0 + p.norm())) << trial;
     // Nearest in scaled space: no point of the box is nearer.
     const double distance = (q - p).cwiseQuotient(box.scale).norm();
-    Rng rng = stream(10, "nearest/" + std::to_string(trial));
+    Rng rng = test::numbered_stream(10, "nearest/", trial);
     for (int other = 0; other < 20; ++other) {
       Eigen::VectorXd y(box.half_width.size());
       for (Eigen::Index i = 0; i < y.size(); ++i) y[i] = box.half_width[i] * rng.uniform(-1.0, 1.0);

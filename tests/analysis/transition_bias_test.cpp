@@ -51,11 +51,11 @@ TEST(TransitionBias, TwoMinimumJerkLegs) {
   for (const double corner : {0.3, 0.4, 0.5, 0.6, 0.7}) {
     std::vector<Demonstration> recordings;
     for (int i = 0; i < 100; ++i) {
-      Rng rng = stream(30, "legs/" + std::to_string(corner) + "/" + std::to_string(i));
+      Rng rng = test::numbered_stream(30, "legs/", static_cast<int>(100 * corner) * 1000 + i);
       recordings.push_back(test::two_phases(100, 16, corner, 0.0044, rng));
     }
     const Both both = measure(recordings);
-    print("corner at " + std::to_string(corner), both);
+    print(std::string("corner at ").append(std::to_string(corner)), both);
     EXPECT_LT(both.changepoint.absolute, both.likeness.absolute + 1e-3) << corner;
   }
 }

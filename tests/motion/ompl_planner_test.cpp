@@ -28,6 +28,7 @@ class OmplPlanner : public ::testing::Test {
     const auto hand = std::make_shared<ob::RealVectorStateSpace>(2);
     hand->setBounds(-1, 1);
     space = arm + hand;
+    space->setup();
     setup = std::make_unique<og::SimpleSetup>(space);
     setup->setStateValidityChecker([this](const ob::State* state) {
       std::vector<double> q;

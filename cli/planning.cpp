@@ -1,0 +1,152 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/planning.hpp"
+
+#include <algorithm>
+#include <ctime>
+
+#include "analysis/statistics.hpp"
+#include "core/require.hpp"
+#include "motion/closing_segment.hpp"
+#include "motion/edge_check.hpp"
+#include "motion/goal_configurations.hpp"
+#include "motion/shortcut.hpp"
+#include "motion/timing.hpp"
+
+namespace opponens::cli {
+namespace {
+
+using analysis::LikenessReference;
+
+const SynergyGroup& group_named(const SynergySet& set, const std::string& name) {
+  const auto found =
+      std::find_if(set.grasp.begin(), set.grasp.end(), [&](const SynergyGroup& group) { return group.name == name; });
+  require(found != set.grasp.end(), "a stored grasp names the unknown group " + name);
+  return *found;
+}
+
+/// Covariance of a group's grasp phase, in radians.
+LikenessReference grasp_phase_reference(const SynergyGroup& group) {
+  const Eigen::MatrixXd scaled = group.basis.axes * group.basis.variance.asDiagonal() * group.basis.axes.transpose();
+  return {"grasp phase of group " + group.name, group.box.scale.asDiagonal() * scaled * group.box.scale.asDiagonal()};
+}
+
+double thread_cpu_seconds() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+}  // namespace
+
+Query make_query(const storage::Store& store, const NamedWorld& world) {
+  auto synergies = newest_synergies(store);
+  require_same_joints(synergies.value, world.hand);
+  Query query{start_configuration(world.robot, world.scene), std::move(synergies.value), {}, {}, {}, {}};
+  query.grasps = grasps_of(store, synergies.id, world.parameters);
+  if (query.grasps.empty()) {
+    throw InputError(store.directory().string() + ": no grasps of " + world.object +
+                     " with this robot, scene and the newest synergies; run: opponens grasp");
+  }
+  for (std::size_t i = 0; i < query.grasps.size(); ++i) {
+    const Grasp& grasp = query.grasps[i].value;
+    for (const auto& arm : grasp.arm_solutions) {
+      query.goals.push_back({motion::join(world.robot, arm.q_pregrasp, grasp.q_pregrasp),
+                             group_named(query.synergies, grasp.group).box, static_cast<int>(query.goals.size())});
+      query.grasp_of_goal.push_back(i);
+      query.q_grasp.push_back(motion::join(world.robot, arm.q_grasp, grasp.q_grasp));
+    }
+  }
+  return query;
+}
+
+std::optional<LikenessReference> free_motion_reference(const storage::Store& store) {
+  std::vector<SampleStatistics> parts;
+  bool simulated = false;
+  for (const auto& motion : hand_motions(store)) {
+    const auto kind = motion.value.labels.find("kind");
+    if (kind == motion.value.labels.end() || kind->second != "free") continue;
+    simulated = simulated || motion.value.origin == Origin::simulated;
+    parts.push_back(analysis::moments(motion.value.q_h, motion.value.weight));
+  }
+  if (parts.empty()) return std::nullopt;
+  return LikenessReference{simulated ? "free finger motions (simulated)" : "free finger motions",
+                           analysis::pooled(parts).covariance};
+}
+
+Planning::Planning(const PlanOptions& options, const NamedWorld& world, Query query,
+                   std::optional<LikenessReference> free_motion)
+    : options_(options),
+      world_(world),
+      query_(std::move(query)),
+      free_motion_(std::move(free_motion)),
+      checker_(world.robot, world.scene),
+      space_(motion::make_world(checker_, world.robot, options.resolution)) {
+  settings_.variant = options.planner == "synergy" ? motion::Variant::synergy : motion::Variant::rrtconnect;
+  settings_.step = options.step;
+  settings_.resolution = options.resolution;
+  settings_.max_checks = options.max_checks;
+  settings_.time_limit = options.time_limit;
+  settings_.interrupted = [] { return interrupt_requested.load(); };
+  motion::validate(settings_);
+}
+
+Run Planning::run(std::uint64_t seed) const {
+  Run result;
+  result.seed = seed;
+  const double begin = thread_cpu_seconds();
+  const auto& robot = world_.robot;
+  result.planned = motion::plan(query_.start, query_.synergies.pre_grasp.box, query_.goals, robot.joint_names(),
+                                robot.hand(), robot.lower(), robot.upper(), robot.weights(), space_, settings_, seed);
+  result.cpu_seconds = thread_cpu_seconds() - begin;
+  if (result.planned.status == PlanStatus::solved) finish(result);
+  return result;
+}
+
+void Planning::finish(Run& run) const {
+  const auto& robot = world_.robot;
+  const auto shorter = motion::shortcut(run.planned.path, robot.weights(), space_, {}, run.seed);
+  run.length = shorter.length;
+  const auto goal = static_cast<std::size_t>(run.planned.goal);
+  const Grasp& grasp = query_.grasps[query_.grasp_of_goal[goal]].value;
+  const robot::CollisionChecker closing(robot, world_.scene, touching(grasp));
+  auto whole = motion::append_closing_segment(shorter.path, query_.q_grasp[goal], robot.hand(),
+                                              motion::closing_world(closing, robot, options_.resolution));
+  if (!whole) {
+    run.planned.status = PlanStatus::no_goals;
+    run.planned.detail = whole.error().detail;
+    return;
+  }
+  run.motion = std::move(*whole);
+  run.pregrasp_row = static_cast<int>(shorter.path.waypoints.rows()) - 1;
+  run.times = motion::waypoint_times(run.motion, robot.velocity(), {});
+  add_human_likeness(run, group_named(query_.synergies, grasp.group));
+}
+
+/// The grasp's own contacts: the only link-object pairs that may touch, on the closing segment alone.
+std::vector<robot::BodyPair> Planning::touching(const Grasp& grasp) const {
+  std::vector<robot::BodyPair> pairs;
+  for (const auto& contact : grasp.contacts) pairs.emplace_back(contact.link, world_.object);
+  return pairs;
+}
+
+void Planning::add_human_likeness(Run& run, const SynergyGroup& group) const {
+  const auto hand = [&](const Eigen::MatrixXd& q) {
+    return Eigen::MatrixXd(q.middleCols(world_.robot.hand().first, world_.robot.hand().count));
+  };
+  const auto add = [&](const char* of, const Eigen::MatrixXd& waypoints, const LikenessReference& reference) {
+    run.human_likeness.push_back({{"of", of},
+                                  {"value", number(analysis::human_likeness(hand(waypoints), reference))},
+                                  {"reference", reference.name}});
+  };
+  const Eigen::MatrixXd shortened = run.motion.waypoints.topRows(run.pregrasp_row + 1);
+  if (free_motion_) {
+    add("planned", run.planned.path.waypoints, *free_motion_);
+    add("shortened", shortened, *free_motion_);
+  } else {
+    run.human_likeness.push_back({{"of", "planned"}, {"value", nullptr}, {"reference", "none in the store"}});
+  }
+  add("planned", run.planned.path.waypoints, grasp_phase_reference(group));
+}
+
+}  // namespace opponens::cli

@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/human_likeness.hpp"
+#include "cli/commands.hpp"
+#include "cli/json.hpp"
+#include "cli/stored.hpp"
+#include "cli/world.hpp"
+#include "motion/syn_planner.hpp"
+#include "robot/collision.hpp"
+
+namespace opponens::cli {
+
+/// The query: goals are the pre-grasps of every arm solution of every grasp.
+struct Query {
+  Eigen::VectorXd start;
+  SynergySet synergies;
+  std::vector<Stored<Grasp>> grasps;
+  std::vector<motion::GoalRoot> goals;     ///< goal = index into this list
+  std::vector<std::size_t> grasp_of_goal;  ///< index into grasps
+  std::vector<Eigen::VectorXd> q_grasp;    ///< [d] where the closing segment of each goal ends
+};
+
+/// Throws InputError when the store has no grasps for this world, or the scene no start.
+Query make_query(const storage::Store& store, const NamedWorld& world);
+
+/// Free motions of the hand, the reference of human-likeness; nullopt when the store has none.
+std::optional<analysis::LikenessReference> free_motion_reference(const storage::Store& store);
+
+struct Run {
+  std::uint64_t seed = 0;
+  PlanResult planned;     ///< as the planner returned it, up to the pre-grasp
+  JointPath motion;       ///< shortened, with the closing segment
+  Eigen::VectorXd times;  ///< [N] s
+  int pregrasp_row = -1;
+  double length = 0.0;       ///< rad, of the shortened path up to the pre-grasp
+  double cpu_seconds = 0.0;  ///< of the planner; goes to documents, never into the store
+  Json human_likeness = Json::array();
+};
+
+/// What every run shares, read only: one may run on each thread.
+class Planning {
+ public:
+  /// Referred to and must outlive this: options and world.
+  Planning(const PlanOptions& options, const NamedWorld& world, Query query,
+           std::optional<analysis::LikenessReference> free_motion);
+
+  const Query& query() const { return query_; }
+  Run run(std::uint64_t seed) const;
+
+ private:
+  void finish(Run& run) const;
+  std::vector<robot::BodyPair> touching(const Grasp& grasp) const;
+  void add_human_likeness(Run& run, const SynergyGroup& group) const;
+
+  const PlanOptions& options_;
+  const NamedWorld& world_;
+  Query query_;
+  std::optional<analysis::LikenessReference> free_motion_;
+  robot::CollisionChecker checker_;
+  motion::World space_;
+  motion::PlannerSettings settings_;
+};
+
+}  // namespace opponens::cli

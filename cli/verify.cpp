@@ -1,0 +1,186 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <map>
+
+#include "cli/commands.hpp"
+#include "cli/json.hpp"
+#include "cli/resources.hpp"
+#include "cli/stored.hpp"
+#include "cli/world.hpp"
+#include "core/require.hpp"
+#include "storage/codec.hpp"
+#include "verify/grasps.hpp"
+#include "verify/paths.hpp"
+
+namespace opponens::cli {
+namespace {
+
+using opponens::verify::Verdict;
+
+/// Worlds by their parameters: many objects share one.
+class Worlds {
+ public:
+  const NamedWorld& of(const Json& parameters) {
+    const std::string key = parameters.dump();
+    const auto found = worlds_.find(key);
+    if (found != worlds_.end()) return found->second;
+    return worlds_.emplace(key, load_world(parameters.at("robot"), parameters.at("scene"), parameters.at("object")))
+        .first->second;
+  }
+
+ private:
+  std::map<std::string, NamedWorld> worlds_;
+};
+
+/// Robot, scene and meshes must be the ones that the object was made with.
+void check_files(const storage::Record& record, Verdict& verdict) {
+  for (const auto& [name, hash] : record.provenance.files) {
+    try {
+      if (file_sha256(find_file(name)) != hash) verdict.fail(name + " has changed since");
+    } catch (const InputError&) {
+      verdict.fail(name + " is not there any more");
+    }
+  }
+}
+
+const SynergyGroup* find_group(const SynergySet& set, const std::string& name) {
+  const auto found = std::find_if(set.grasp.begin(), set.grasp.end(),
+                                  [&](const SynergyGroup& group) { return group.name == name; });
+  return found == set.grasp.end() ? nullptr : &*found;
+}
+
+Verdict grasp_verdict(const storage::Store& store, const storage::Record& record, Worlds& worlds) {
+  const Grasp grasp = storage::decode_grasp(record);
+  const SynergySet synergies = storage::decode_synergy_set(store.read(record.provenance.inputs.at(0)));
+  const SynergyGroup* group = find_group(synergies, grasp.group);
+  Verdict verdict;
+  if (group == nullptr) {
+    verdict.fail("its synergies have no group " + grasp.group);
+    return verdict;
+  }
+  const NamedWorld& world = worlds.of(parameters_of(record).at("world"));
+  return opponens::verify::check_grasp(grasp, {&group->box, &world.hand, &world.scene.body(world.object)});
+}
+
+/// The arm solution that a path uses: the one nearest to its pre-grasp (check_path asks for equality).
+const ArmSolution& solution_used(const Grasp& grasp, const Eigen::VectorXd& q_arm) {
+  return *std::min_element(grasp.arm_solutions.begin(), grasp.arm_solutions.end(),
+                           [&](const ArmSolution& a, const ArmSolution& b) {
+                             return (a.q_pregrasp - q_arm).norm() < (b.q_pregrasp - q_arm).norm();
+                           });
+}
+
+Verdict path_verdict(const storage::Store& store, const storage::Record& record, Worlds& worlds) {
+  const Json parameters = parameters_of(record);
+  const NamedWorld& world = worlds.of(parameters.at("world"));
+  const Grasp grasp = storage::decode_grasp(store.read(std::get<std::string>(record.fields.at("goal_grasp"))));
+  const PlanResult planned = storage::decode_plan_result(record);
+  const JointPath motion{planned.path.joint_names, std::get<Eigen::MatrixXd>(record.fields.at("motion"))};
+  opponens::verify::PathClaim claim;
+  claim.start = start_configuration(world.robot, world.scene);
+  claim.closing_from = std::get<std::int64_t>(record.fields.at("pregrasp_row"));
+  Verdict verdict;
+  if (grasp.arm_solutions.empty() || claim.closing_from < 0 || claim.closing_from >= motion.waypoints.rows()) {
+    verdict.fail("its grasp has no arm solution, or its pre-grasp is no waypoint");
+    return verdict;
+  }
+  const ArmSolution& arm =
+      solution_used(grasp, motion.waypoints.row(claim.closing_from).head(world.robot.arm().count).transpose());
+  claim.goal.resize(world.robot.dof());
+  claim.goal << arm.q_pregrasp, grasp.q_pregrasp;
+  claim.grasp = Eigen::VectorXd(world.robot.dof());
+  *claim.grasp << arm.q_grasp, grasp.q_grasp;
+  claim.object = world.object;
+  for (const auto& contact : grasp.contacts) claim.contact_links.insert(contact.link);
+  opponens::verify::PathCheckSettings settings;
+  settings.spacing = parameters.at("resolution").get<double>() / 10.0;
+  settings.clearance_spacing = parameters.at("resolution").get<double>();
+  return opponens::verify::check_path(motion, claim, world.robot, world.scene, settings);
+}
+
+struct Tally {
+  Json failed = Json::array();
+  Json verdicts = Json::array();
+  std::vector<std::string> ids;
+  double worst_clearance = std::numeric_limits<double>::infinity();
+  double worst_penetration = 0.0;
+};
+
+void add(const std::string& id, const std::string& kind, const Verdict& verdict, Tally& tally) {
+  std::string reason;
+  for (const auto& one : verdict.reasons) reason += (reason.empty() ? "" : "; ") + one;
+  tally.verdicts.push_back({{"id", id}, {"kind", kind}, {"passed", verdict.ok}, {"reason", reason}});
+  tally.ids.push_back(id);
+  if (!verdict.ok) tally.failed.push_back({{"id", id}, {"reason", reason}});
+  tally.worst_clearance = std::min(tally.worst_clearance, verdict.worst_clearance);
+  tally.worst_penetration = std::max(tally.worst_penetration, verdict.worst_contact_penetration);
+}
+
+using Check = Verdict (*)(const storage::Store&, const storage::Record&, Worlds&);
+
+void check_all(const storage::Store& store, const char* kind, Check check, Worlds& worlds, Progress& progress,
+               Tally& tally) {
+  const auto entries = store.list(kind);
+  std::int64_t done = 0;
+  for (const auto& entry : entries) {
+    progress.update(done++, static_cast<std::int64_t>(entries.size()));
+    const auto record = store.read(entry.id);
+    Verdict verdict;
+    check_files(record, verdict);
+    if (verdict.ok) verdict = check(store, record, worlds);
+    add(entry.id, entry.kind, verdict, tally);
+  }
+}
+
+std::vector<std::string> sentences() {
+  return {"Every file's and every object's hash was computed again and compared.",
+          "The robot, scene and mesh files behind grasps and paths are the ones they were made with.",
+          "Grasps: rigid poses, joint limits, slack against the synergy box, contacts on both surfaces, and that their "
+          "wrenches positively span all forces and torques (non-negative least squares, no shared solver).",
+          "Paths: start, pre-grasp, grasp, joint limits, and collision at a tenth of the planner's resolution by a loop "
+          "of its own; contacts only between the grasp's own links and the object, on the closing segment."};
+}
+
+}  // namespace
+
+int verify(const VerifyOptions& options, const Console& console) {
+  storage::Store store(options.common.store, false);
+  const RunLog log(store, "verify", 1);
+  const auto damage = store.check();
+  for (const auto& sentence : damage) Console::warn(sentence);
+  if (!damage.empty()) return kStoreDamaged;
+
+  Worlds worlds;
+  Progress progress(console, "verifying");
+  Tally tally;
+  check_all(store, kGrasp, grasp_verdict, worlds, progress, tally);
+  check_all(store, kPath, path_verdict, worlds, progress, tally);
+  const auto checked = store.list().size();
+  Json result = document("verify");
+  result.update({{"checked", checked},
+                 {"failed", tally.failed},
+                 {"worst_clearance_m", number(tally.worst_clearance)},
+                 {"worst_contact_penetration_m", tally.worst_penetration},
+                 {"checks", sentences()},
+                 {"verdicts", tally.verdicts}});
+  storage::Record record{kVerdicts, "verification", provenance("verify", tally.ids, {}, Json::object(), 0), {}};
+  record.fields["verdicts"] = result.dump();
+  log.finish(store.commit({record}));
+  for (const auto& one : tally.failed) {
+    console.say("FAILED " + one.at("id").get<std::string>().substr(0, 12) + ": " + one.at("reason").get<std::string>());
+  }
+  char clearance[64] = "";
+  if (std::isfinite(tally.worst_clearance)) {
+    std::snprintf(clearance, sizeof clearance, "; worst clearance %.2f mm", 1e3 * tally.worst_clearance);
+  }
+  console.say("checked " + std::to_string(checked) + " objects, " + std::to_string(tally.verdicts.size()) +
+              " grasps and paths again: " + std::to_string(tally.failed.size()) + " failed" + clearance);
+  console.document(result.dump());
+  return tally.failed.empty() ? kDone : kNoAnswer;
+}
+
+}  // namespace opponens::cli

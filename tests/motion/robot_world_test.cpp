@@ -1,0 +1,191 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+// The planner with our UR5 and Allegro hand in front of the bottle shelf.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <numbers>
+
+#include "core/rng.hpp"
+#include "motion/closing_segment.hpp"
+#include "motion/edge_check.hpp"
+#include "motion/goal_configurations.hpp"
+#include "motion/joint_metric.hpp"
+#include "motion/shortcut.hpp"
+#include "motion/syn_planner.hpp"
+#include "motion/timing.hpp"
+#include "robot/load_robot.hpp"
+
+namespace opponens::motion {
+namespace {
+
+const std::filesystem::path kModels = std::filesystem::path(OPPONENS_SOURCE_DIR) / "models";
+
+class RobotWorld : public ::testing::Test {
+ protected:
+  /// The hand's palm with its fingers' side towards the bottle from in front of the shelf, `back` m away from it.
+  Eigen::Isometry3d palm(double back) const {
+    Eigen::Isometry3d X_OH = Eigen::Isometry3d::Identity();
+    X_OH.linear() = side_rotation_;
+    X_OH.translation() = Eigen::Vector3d(-back, 0.0, 0.10);
+    return X_OH;
+  }
+  Eigen::VectorXd start() const {
+    Eigen::VectorXd q(robot.dof());
+    for (std::size_t j = 0; j < scene.start_joints.size(); ++j) {
+      const auto& names = robot.joint_names();
+      const auto at = std::find(names.begin(), names.end(), scene.start_joints[j]) - names.begin();
+      q[at] = scene.start[static_cast<Eigen::Index>(j)];
+    }
+    return q;
+  }
+  Eigen::VectorXd open_hand() const { return start().segment(robot.hand().first, robot.hand().count); }
+  SynergyBox wide_box(double width) const {
+    const int n = robot.hand().count;
+    SynergyBox box;
+    box.center = open_hand();
+    box.axes = Eigen::MatrixXd::Zero(n, 4);
+    for (int j = 0; j < 16; ++j) box.axes(j, j / 4) = 0.5;
+    box.half_width = Eigen::VectorXd::Constant(4, width);
+    box.scale = Eigen::VectorXd::Ones(n);
+    return box;
+  }
+  /// A grasp without contacts: an open hand near the bottle, all fingers off it.
+  Grasp hover(double back) const {
+    Grasp grasp;
+    grasp.q_grasp = open_hand();
+    grasp.q_pregrasp = open_hand();
+    grasp.X_OH = palm(back);
+    grasp.X_OH_pregrasp = palm(back + 0.03);
+    return grasp;
+  }
+  Eigen::Isometry3d X_RO() const { return scene.X_WR.inverse() * scene.body("bottle").X_WB; }
+
+  robot::RobotModel robot{robot::load_robot(kModels / "ur5_allegro" / "ur5_allegro_right.yaml")};
+  robot::Scene scene = robot::load_scene(kModels / "scenes" / "bottle_shelf.yaml");
+  robot::CollisionChecker checker{robot, scene};
+  robot::ArmKinematics kinematics{robot};
+  Eigen::Matrix3d side_rotation_ = Eigen::Matrix3d::Identity();
+
+  /// A palm pose in front of the bottle whose pre-grasp the arm reaches without collision: found by turning the palm in
+  /// steps, so that the test does not depend on how the hand's frame is laid out.
+  std::optional<Grasp> reachable() {
+    for (const double back : {0.12, 0.16, 0.2, 0.25}) {
+      for (int a = 0; a < 4; ++a) {
+        for (int b = 0; b < 4; ++b) {
+          for (int c = 0; c < 4; ++c) {
+            side_rotation_ = (Eigen::AngleAxisd(a * std::numbers::pi / 2, Eigen::Vector3d::UnitZ()) *
+                              Eigen::AngleAxisd(b * std::numbers::pi / 2, Eigen::Vector3d::UnitY()) *
+                              Eigen::AngleAxisd(c * std::numbers::pi / 2, Eigen::Vector3d::UnitX()))
+                                 .toRotationMatrix();
+            Grasp grasp = hover(back);
+            if (reach(grasp, robot, kinematics, X_RO(), checker, checker, 0.02).empty()) return grasp;
+          }
+        }
+      }
+    }
+    return std::nullopt;
+  }
+};
+
+TEST_F(RobotWorld, ReachGivesValidPairsOfBranches) {
+  const auto grasp = reachable();
+  ASSERT_TRUE(grasp);
+  ASSERT_LE(grasp->arm_solutions.size(), static_cast<std::size_t>(kMaxArmSolutions));
+  double last = 0.0;
+  for (const ArmSolution& arm : grasp->arm_solutions) {
+    const Eigen::VectorXd q_pregrasp = join(robot, arm.q_pregrasp, grasp->q_pregrasp);
+    const Eigen::VectorXd q_grasp = join(robot, arm.q_grasp, grasp->q_grasp);
+    EXPECT_TRUE(checker.free(q_pregrasp));
+    EXPECT_TRUE(checker.free(q_grasp));
+    for (const auto& [q, X_OH] : {std::pair(q_pregrasp, grasp->X_OH_pregrasp), std::pair(q_grasp, grasp->X_OH)}) {
+      const Eigen::Isometry3d X_RH = robot.link_poses(q)[static_cast<std::size_t>(robot.palm())];
+      EXPECT_TRUE(X_RH.isApprox(X_RO() * X_OH, 1e-6));
+    }
+    const double motion = distance(robot.weights(), q_pregrasp, q_grasp);
+    EXPECT_GE(motion, last - 1e-9);
+    EXPECT_LT(motion, 1.0) << "another branch";
+    last = motion;
+  }
+}
+
+TEST_F(RobotWorld, ReachSaysWhyNot) {
+  auto grasp = reachable();
+  ASSERT_TRUE(grasp);
+  Grasp far = *grasp;
+  far.X_OH.translation().x() -= 5.0;
+  EXPECT_EQ(reach(far, robot, kinematics, X_RO(), checker, checker, 0.02), "no inverse kinematics");
+  EXPECT_TRUE(far.arm_solutions.empty());
+  Grasp inside = *grasp;  // the pre-grasp's palm in the bottle
+  inside.X_OH_pregrasp.translation() = Eigen::Vector3d(0, 0, 0.1);
+  inside.X_OH.translation() = Eigen::Vector3d(0, 0, 0.1);
+  const std::string reason = reach(inside, robot, kinematics, X_RO(), checker, checker, 0.02);
+  EXPECT_EQ(reason.rfind("pre-grasp in collision: ", 0), 0U) << reason;
+  Grasp through = *grasp;  // from a free pre-grasp into the bottle
+  through.X_OH.translation() = Eigen::Vector3d(0, 0, 0.1);
+  const std::string closing = reach(through, robot, kinematics, X_RO(), checker, checker, 0.02);
+  EXPECT_TRUE(closing.rfind("closing segment in collision: ", 0) == 0 || closing == "no inverse kinematics") << closing;
+}
+
+TEST_F(RobotWorld, ContactDepthOfAFingertipInTheBottle) {
+  auto grasp = reachable();
+  ASSERT_TRUE(grasp);
+  std::vector<std::string> hand;
+  for (const auto& link : robot.links()) hand.push_back(link.name);
+  const ContactDepth depth(robot, scene, "bottle", hand);
+  const Eigen::VectorXd clear = join(robot, grasp->arm_solutions[0].q_grasp, grasp->q_grasp);
+  EXPECT_EQ(depth(clear), 0.0);
+  // The bottle moved so that its axis runs through a tip: the depth is what FCL's truth sees as a collision.
+  robot::Scene moved = scene;
+  const auto& tip = robot.description().tips.front();
+  const Eigen::Vector3d p_W = scene.X_WR * robot.link_poses(clear)[static_cast<std::size_t>(tip.link)] * tip.p_L;
+  moved.bodies.front().X_WB.translation() = p_W + Eigen::Vector3d(0.029, 0, -0.06);  // radius 32 mm
+  ASSERT_EQ(moved.bodies.front().name, "bottle");
+  const ContactDepth touching(robot, moved, "bottle", {robot.links()[static_cast<std::size_t>(tip.link)].name});
+  EXPECT_GT(touching(clear), 0.002);
+  EXPECT_FALSE(robot::CollisionChecker(robot, moved).free(clear));
+}
+
+class RobotPlan : public RobotWorld, public ::testing::WithParamInterface<Variant> {};
+INSTANTIATE_TEST_SUITE_P(Variants, RobotPlan, ::testing::Values(Variant::synergy, Variant::rrtconnect));
+
+TEST_P(RobotPlan, ReachesTheShelf) {
+  const auto grasp = reachable();
+  ASSERT_TRUE(grasp);
+  std::vector<GoalRoot> goals;
+  for (const ArmSolution& arm : grasp->arm_solutions) {
+    goals.push_back({join(robot, arm.q_pregrasp, grasp->q_pregrasp), wide_box(0.6), static_cast<int>(goals.size())});
+  }
+  PlannerSettings settings;
+  settings.variant = GetParam();
+  const World world = make_world(checker, robot, settings.resolution);
+  const auto run = [&](std::uint64_t seed) {
+    return plan(start(), wide_box(0.4), goals, robot.joint_names(), robot.hand(), robot.lower(), robot.upper(),
+                robot.weights(), world, settings, seed);
+  };
+  const PlanResult result = run(1);
+  ASSERT_EQ(result.status, PlanStatus::solved) << result.detail;
+  EXPECT_EQ(run(1).path.waypoints, result.path.waypoints);
+  const Shortcut shorter = shortcut(result.path, robot.weights(), world, {}, 1);
+  EXPECT_LE(shorter.length, result.length);
+  const auto goal = static_cast<std::size_t>(result.goal);
+  const auto whole =
+      append_closing_segment(shorter.path, join(robot, grasp->arm_solutions[goal].q_grasp, grasp->q_grasp),
+                             robot.hand(), closing_world(checker, robot, settings.resolution));
+  ASSERT_TRUE(whole);
+  std::int64_t checks = 0;
+  for (Eigen::Index i = 1; i < whole->waypoints.rows(); ++i) {
+    const Eigen::VectorXd from = whole->waypoints.row(i - 1).transpose();
+    EXPECT_FALSE(world.confirm(from, whole->waypoints.row(i).transpose(), checks));
+  }
+  const Eigen::VectorXd times = waypoint_times(*whole, robot.velocity(), {});
+  EXPECT_GT(times[times.size() - 1], 0.5);
+  RecordProperty("iterations", static_cast<int>(result.iterations));
+  RecordProperty("checks", static_cast<int>(result.collision_checks));
+  RecordProperty("length_mrad", static_cast<int>(1000 * result.length));
+  RecordProperty("length_shortcut_mrad", static_cast<int>(1000 * shorter.length));
+}
+
+}  // namespace
+}  // namespace opponens::motion

@@ -1,0 +1,288 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "robot/hand_mapping.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "core/require.hpp"
+#include "core/rng.hpp"
+#include "robot/load_robot.hpp"
+
+namespace opponens::robot {
+namespace {
+
+const std::string kHand = OPPONENS_SOURCE_DIR "/models/ur5_allegro/allegro_right.yaml";
+const std::string kHuman = OPPONENS_SOURCE_DIR "/models/human_hand/human_hand.yaml";
+
+Eigen::Index column(const Demonstration& recording, const std::string& name) {
+  const auto& names = recording.joint_names;
+  return std::find(names.begin(), names.end(), name) - names.begin();
+}
+
+/// Every joint swings smoothly between the given shares of its range, each with its own phase.
+Demonstration swing(const RobotModel& model, double from, double to, int samples = 60) {
+  Demonstration recording;
+  recording.id = "swing";
+  recording.labels = {{"grasp_type", "test"}};
+  recording.origin = Origin::simulated;
+  recording.joint_names = model.hand().joint_names;
+  recording.time = Eigen::VectorXd::LinSpaced(samples, 0.0, 0.02 * (samples - 1));
+  recording.q_h.resize(samples, model.dof());
+  Rng rng(21);
+  for (int i = 0; i < model.dof(); ++i) {
+    const double phase = rng.uniform(0, 2 * std::numbers::pi);
+    for (int t = 0; t < samples; ++t) {
+      const double share = from + (to - from) * (0.5 + 0.5 * std::sin(phase + 4.0 * t / samples));
+      recording.q_h(t, i) = model.lower()[i] + share * (model.upper()[i] - model.lower()[i]);
+    }
+  }
+  return recording;
+}
+
+/// Allegro as the "human": its recordings have an exact image, with base and scale the same.
+HandMapping self_mapping(const HandMapping& mapping) {
+  HandMapping self = mapping;
+  for (JointMapping& copy : self.copied) copy.channel = copy.joint;
+  return self;
+}
+
+struct Hands {
+  RobotModel human{load_hand(kHuman)};
+  RobotModel hand{load_hand(kHand)};
+  HandMapping mapping = load_hand_mapping(kHand);
+};
+
+TEST(HandMapping, ReadsTheMappingOfThePaper) {
+  const HandMapping mapping = load_hand_mapping(kHand);
+  EXPECT_EQ(mapping.copied.size(), 11u);
+  EXPECT_EQ(mapping.fitted,
+            (std::vector<std::string>{"joint_0.0", "joint_4.0", "joint_8.0", "joint_12.0", "joint_13.0"}));
+  EXPECT_EQ(mapping.fingertips.at("ring"), "ring");
+  EXPECT_THROW(load_hand_mapping(kHuman), InputError) << "it has no key 'mapping'";
+}
+
+TEST(HandMapping, MappingErrorsNameTheField) {
+  const auto folder = std::filesystem::temp_directory_path() / "opponens_hand_mapping_test";
+  std::filesystem::create_directories(folder);
+  const auto error = [&](const std::string& mapping) {
+    const auto file = folder / "hand.yaml";
+    std::ofstream(file) << "urdf: x\npalm_link: a\njoints: [j, k]\ntips:\n  - {finger: i, link: a, point: [0, 0, 0], "
+                           "normal: [1, 0, 0]}\nmapping:\n"
+                        << mapping;
+    try {
+      load_hand_mapping(file);
+    } catch (const InputError& caught) {
+      return std::string(caught.what());
+    }
+    return std::string("no error");
+  };
+  EXPECT_EQ(error("  copied: [{joint: j, channel: C}]\n  fitted: [k]\n  fingertips: {i: index}\n"), "no error");
+  EXPECT_NE(error("  copied: [{joint: z, channel: C}]\n").find("hand.yaml:7: mapping.copied[0].joint"),
+            std::string::npos);
+  EXPECT_NE(error("  copied: [{joint: j, channel: C}]\n  fitted: [j]\n").find("mapped twice"), std::string::npos);
+  EXPECT_NE(error("  copied: []\n  fingertips: {thumb: thumb}\n").find("no tip 'thumb'"), std::string::npos);
+  EXPECT_NE(error("  copied: [{joint: j, channel: C, gain: high}]\n").find("expected a number"), std::string::npos);
+  std::filesystem::remove_all(folder);
+}
+
+TEST(CalibrateRange, MapsPercentilesToTheJointRange) {
+  const RobotModel human(load_hand(kHuman));
+  Demonstration recording;
+  recording.id = "r";
+  recording.joint_names = {"I_MCP", "I_PIP", "unknown", "M_MCP"};
+  recording.time = Eigen::VectorXd::LinSpaced(101, 0, 1);
+  recording.q_h.resize(101, 4);
+  for (int t = 0; t <= 100; ++t) recording.q_h.row(t) << 0.01 * t, -0.02 * t, t, 0.7;
+  const ChannelCalibration calibration = calibrate_range({&recording}, human, {{"I_PIP", -1.0}});
+  ASSERT_EQ(calibration.channels, (std::vector<std::string>{"I_MCP", "I_PIP", "M_MCP"}));
+  const auto joint = [&](const std::string& name) {
+    const auto& names = human.joint_names();
+    return std::find(names.begin(), names.end(), name) - names.begin();
+  };
+  const Eigen::Index mcp = joint("I_MCP");
+  EXPECT_NEAR(calibration.gain[0] * 0.01 + calibration.offset[0], human.lower()[mcp], 1e-12);
+  EXPECT_NEAR(calibration.gain[0] * 0.99 + calibration.offset[0], human.upper()[mcp], 1e-12);
+  const Eigen::Index pip = joint("I_PIP");
+  EXPECT_NEAR(calibration.gain[1] * -0.02 + calibration.offset[1], human.lower()[pip], 1e-12);
+  EXPECT_NEAR(calibration.gain[1] * -1.98 + calibration.offset[1], human.upper()[pip], 1e-12);
+  EXPECT_EQ(calibration.gain[2], 0.0) << "a channel that does not move";
+  EXPECT_EQ(calibration.offset[2], 0.0);
+  recording.q_h(3, 0) = std::nan("");
+  EXPECT_THROW(calibrate_range({&recording}, human, {}), std::invalid_argument);
+  EXPECT_THROW(calibrate_range({}, human, {}), std::invalid_argument);
+}
+
+TEST(Retarget, CopiesExactlyStaysInsideTheLimitsAndKeepsTheRest) {
+  const Hands hands;
+  const Demonstration recording = swing(hands.human, 0.0, 1.0);
+  const auto result = retarget(recording, {}, hands.human, hands.hand, hands.mapping, {});
+  ASSERT_TRUE(result) << result.error().detail;
+  const Demonstration& mapped = result->demonstration;
+  EXPECT_EQ(mapped.joint_names, hands.hand.joint_names());
+  EXPECT_EQ(mapped.labels, recording.labels);
+  EXPECT_EQ(mapped.time, recording.time);
+  EXPECT_EQ(mapped.origin, Origin::simulated);
+  for (Eigen::Index t = 0; t < mapped.q_h.rows(); ++t) {
+    EXPECT_TRUE(hands.hand.within_limits(mapped.q_h.row(t).transpose(), 0.0)) << "sample " << t;
+  }
+  for (const JointMapping& copy : hands.mapping.copied) {
+    const Eigen::Index joint = column(mapped, copy.joint);
+    const Eigen::VectorXd wanted = recording.q_h.col(column(recording, copy.channel))
+                                       .cwiseMax(hands.hand.lower()[joint])
+                                       .cwiseMin(hands.hand.upper()[joint]);
+    EXPECT_EQ(mapped.q_h.col(joint), wanted) << copy.joint;
+  }
+  EXPECT_EQ(result->clamped_samples, 0) << "the human ranges lie inside the Allegro's";
+}
+
+TEST(Retarget, CalibrationGainAndClampingAreApplied) {
+  const Hands hands;
+  Demonstration recording = swing(hands.human, 0.4, 0.5);
+  ChannelCalibration calibration{{"I_MCP"}, Eigen::VectorXd::Constant(1, -1.0), Eigen::VectorXd::Constant(1, 5.0)};
+  const auto result = retarget(recording, calibration, hands.human, hands.hand, hands.mapping, {});
+  ASSERT_TRUE(result) << result.error().detail;
+  EXPECT_EQ(result->clamped_samples, recording.q_h.rows());
+  const Eigen::Index joint = column(result->demonstration, "joint_1.0");
+  EXPECT_TRUE((result->demonstration.q_h.col(joint).array() == hands.hand.upper()[joint]).all());
+}
+
+TEST(Retarget, RecoversTheRobotsOwnMovement) {
+  const Hands hands;
+  const Demonstration recording = swing(hands.hand, 0.3, 0.7);
+  const HandMapping mapping = self_mapping(hands.mapping);
+  const auto exact = retarget(recording, {}, hands.hand, hands.hand, mapping, {.smoothness = 0.0, .rest = 1e-4});
+  ASSERT_TRUE(exact) << exact.error().detail;
+  // Flexed fingers and the thumb are identifiable from their tips.
+  EXPECT_LT((exact->demonstration.q_h - recording.q_h).cwiseAbs().maxCoeff(), 1e-5);
+  EXPECT_LT(exact->tip_residual_max, 1e-6);
+  const auto smooth = retarget(recording, {}, hands.hand, hands.hand, mapping, {});
+  ASSERT_TRUE(smooth) << smooth.error().detail;
+  EXPECT_LT((smooth->demonstration.q_h - recording.q_h).cwiseAbs().maxCoeff(), 5e-3);
+}
+
+TEST(Retarget, FittingReducesTheTipResidual) {
+  const Hands hands;
+  const Demonstration recording = swing(hands.human, 0.2, 0.8);
+  HandMapping unfitted = hands.mapping;
+  unfitted.fitted.clear();
+  const auto fitted = retarget(recording, {}, hands.human, hands.hand, hands.mapping, {});
+  const auto rest = retarget(recording, {}, hands.human, hands.hand, unfitted, {});
+  ASSERT_TRUE(fitted && rest);
+  EXPECT_LT(fitted->tip_residual_rms, 0.9 * rest->tip_residual_rms);
+  EXPECT_GT(fitted->tip_residual_rms, 1e-4) << "the hands differ: a perfect fit would mean that nothing is compared";
+}
+
+/// At the optimum inside the limits the gradient of the documented cost vanishes; this writes that cost a second time.
+TEST(Retarget, NoNeighbourIsBetter) {
+  const Hands hands;
+  const Demonstration recording = swing(hands.hand, 0.3, 0.7, 8);
+  HandMapping mapping = self_mapping(hands.mapping);
+  const RetargetSettings settings{.smoothness = 2.0, .rest = 0.5};
+  const auto result = retarget(recording, {}, hands.hand, hands.hand, mapping, settings);
+  ASSERT_TRUE(result) << result.error().detail;
+  const auto cost = [&](const Eigen::MatrixXd& q) {
+    double sum = 0.0;
+    for (Eigen::Index t = 0; t < q.rows(); ++t) {
+      const auto X = hands.hand.link_poses(q.row(t).transpose());
+      const auto Y = hands.hand.link_poses(recording.q_h.row(t).transpose());
+      for (const SurfacePoint& tip : hands.hand.description().tips) {
+        const auto link = static_cast<std::size_t>(tip.link);
+        sum += (100.0 * (X[link] * tip.p_L - Y[link] * tip.p_L)).squaredNorm();
+      }
+      for (const std::string& name : mapping.fitted) {
+        const Eigen::Index i = column(result->demonstration, name);
+        sum += std::pow(settings.rest * (q(t, i) - 0.5 * (hands.hand.lower()[i] + hands.hand.upper()[i])), 2);
+        if (t > 0) sum += std::pow(settings.smoothness * (q(t, i) - q(t - 1, i)), 2);
+      }
+    }
+    return sum;
+  };
+  const Eigen::MatrixXd best = result->demonstration.q_h;
+  for (const std::string& name : mapping.fitted) {
+    for (Eigen::Index t = 0; t < best.rows(); ++t) {
+      for (const double step : {1e-3, -1e-3}) {
+        Eigen::MatrixXd moved = best;
+        moved(t, column(result->demonstration, name)) += step;
+        EXPECT_GT(cost(moved), cost(best)) << name << " sample " << t;
+      }
+    }
+  }
+  EXPECT_LT(cost(best), 0.99 * cost(recording.q_h)) << "smoothing trades tip positions: the input is not optimal";
+}
+
+TEST(Retarget, SmoothnessShortensThePath) {
+  const Hands hands;
+  Demonstration recording = swing(hands.human, 0.2, 0.8);
+  Rng rng(3);
+  for (Eigen::Index i = 0; i < recording.q_h.size(); ++i) recording.q_h.data()[i] += 0.03 * rng.normal();
+  const auto roughness = [&](double smoothness) {
+    const auto result = retarget(recording, {}, hands.human, hands.hand, hands.mapping, {.smoothness = smoothness});
+    EXPECT_TRUE(result);
+    double sum = 0.0;
+    for (const std::string& name : hands.mapping.fitted) {
+      const auto q = result->demonstration.q_h.col(column(result->demonstration, name));
+      sum += (q.tail(q.size() - 1) - q.head(q.size() - 1)).squaredNorm();
+    }
+    return sum;
+  };
+  EXPECT_LT(roughness(5.0), 0.7 * roughness(0.1));
+}
+
+TEST(Retarget, PositionsHeldAtALimitAreOptimalToo) {
+  const Hands hands;
+  const Demonstration recording = swing(hands.human, 0.0, 1.0);
+  HandMapping turned = hands.mapping;  // the thumb's targets lie out of its reach
+  turned.R_robot_human = Eigen::AngleAxisd(0.8, Eigen::Vector3d::UnitX()).toRotationMatrix();
+  const auto result = retarget(recording, {}, hands.human, hands.hand, turned, {});
+  ASSERT_TRUE(result) << result.error().detail;
+  int at_limit = 0;
+  for (const std::string& name : turned.fitted) {
+    const Eigen::Index i = column(result->demonstration, name);
+    const auto q = result->demonstration.q_h.col(i).array();
+    at_limit += static_cast<int>((q == hands.hand.lower()[i] || q == hands.hand.upper()[i]).count());
+  }
+  EXPECT_GT(at_limit, 20);
+}
+
+TEST(Retarget, IsDeterministic) {
+  const Hands hands;
+  const Demonstration recording = swing(hands.human, 0.1, 0.9);
+  const auto first = retarget(recording, {}, hands.human, hands.hand, hands.mapping, {});
+  const auto second = retarget(recording, {}, hands.human, hands.hand, hands.mapping, {});
+  ASSERT_TRUE(first && second);
+  EXPECT_EQ(first->demonstration.q_h, second->demonstration.q_h);
+}
+
+TEST(Retarget, SaysWhatIsMissing) {
+  const Hands hands;
+  const Demonstration recording = swing(hands.human, 0.2, 0.8, 5);
+  const auto code = [&](const Demonstration& input, const HandMapping& mapping) {
+    const auto result = retarget(input, {}, hands.human, hands.hand, mapping, {});
+    return result ? std::string("none") : result.error().detail;
+  };
+  EXPECT_EQ(code(recording, hands.mapping), "none");
+  Demonstration renamed = recording;
+  renamed.joint_names[static_cast<std::size_t>(column(recording, "R_PIP"))] = "other";
+  EXPECT_NE(code(renamed, hands.mapping).find("no channel 'R_PIP'"), std::string::npos);
+  Demonstration broken = recording;
+  broken.q_h(2, 2) = std::nan("");
+  EXPECT_NE(code(broken, hands.mapping).find("not finite"), std::string::npos);
+  HandMapping tips = hands.mapping;
+  tips.fingertips.erase("thumb");
+  EXPECT_NE(code(recording, tips).find("'joint_12.0' is fitted, but moves no mapped"), std::string::npos);
+  tips = hands.mapping;
+  tips.fingertips["index"] = "sixth";
+  EXPECT_NE(code(recording, tips).find("no tip 'sixth'"), std::string::npos);
+  Demonstration ragged = recording;
+  ragged.time.conservativeResize(3);
+  EXPECT_THROW(code(ragged, hands.mapping), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace opponens::robot

@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "verify/grasps.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/verify/gantry.hpp"
+
+namespace opponens::verify {
+namespace {
+
+class CheckGrasp : public ::testing::Test {
+ protected:
+  /// All reasons in one text.
+  std::string fault() const {
+    const Verdict verdict = check_grasp(grasp, {&box, &hand, &object});
+    EXPECT_EQ(verdict.ok, verdict.reasons.empty());
+    std::string text;
+    for (const std::string& reason : verdict.reasons) text += reason + "; ";
+    return text;
+  }
+  bool fault_is(const std::string& part) const {
+    const std::string text = fault();
+    const bool found = text.find(part) != std::string::npos;
+    if (!found) ADD_FAILURE() << "got: " << text;
+    return found;
+  }
+  Grasp grasp = cube_grasp();
+  SynergyBox box = cube_box();
+  robot::RobotModel hand = cube_hand();
+  robot::SceneBody object = body("cube", robot::Box{Eigen::Vector3d(0.04, 0.04, 0.04)}, {1, 2, 3});
+};
+
+TEST_F(CheckGrasp, ARightOnePasses) { EXPECT_EQ(fault(), ""); }
+
+TEST_F(CheckGrasp, WrongHandJoint) {
+  grasp.q_grasp[2] += 0.001;
+  EXPECT_TRUE(fault_is("q_grasp differs from synergies plus slack by 0.001 rad"));
+}
+
+TEST_F(CheckGrasp, HandJointMovedWithItsSlackLeavesTheSurface) {
+  grasp.q_grasp[2] -= 0.01;
+  grasp.slack[2] -= 0.01;
+  EXPECT_TRUE(fault_is("contact 2 (tip2) is 10 mm off its link's surface"));
+}
+
+TEST_F(CheckGrasp, JointLimits) {
+  grasp.q_pregrasp[1] = -1.2;
+  EXPECT_TRUE(fault_is("q_pregrasp: joint f1 = -1.2 rad is outside [-1, 1]"));
+  grasp.q_pregrasp = Eigen::Vector3d::Zero();
+  EXPECT_TRUE(fault_is("q_pregrasp has 3 entries"));
+}
+
+TEST_F(CheckGrasp, TamperedNormal) {
+  grasp.contacts[0].n_O *= 1.01;
+  EXPECT_TRUE(fault_is("contact 0 (tip0): position, normal"));
+  grasp = cube_grasp();
+  grasp.contacts[0].n_O = Eigen::Vector3d(std::cos(0.5), std::sin(0.5), 0);  // still unit, still force closure
+  EXPECT_TRUE(fault_is("normal is 0.5 rad off the object's surface normal"));
+  grasp.contacts[0].n_O = Eigen::Vector3d(NAN, 0, 0);
+  EXPECT_TRUE(fault_is("contact 0"));
+}
+
+TEST_F(CheckGrasp, MovedContact) {
+  grasp.contacts[3].p_OC.y() += 0.004;
+  EXPECT_TRUE(fault_is("contact 3 (tip3) is 4 mm off the object's surface"));
+  grasp = cube_grasp();
+  grasp.contacts[3].link = "thumb";
+  EXPECT_TRUE(fault_is("the hand has no such link"));
+}
+
+TEST_F(CheckGrasp, PoseThatIsNotRigid) {
+  grasp.X_OH.linear()(0, 0) = 1.001;
+  EXPECT_TRUE(fault_is("X_OH is no rigid pose"));
+  grasp = cube_grasp();
+  grasp.X_OH_pregrasp.linear()(2, 2) = -1.0;  // a reflection is orthonormal
+  EXPECT_TRUE(fault_is("X_OH_pregrasp is no rigid pose"));
+}
+
+TEST_F(CheckGrasp, SlackAndCoefficientsHaveBounds) {
+  grasp.slack[0] = 0.4;
+  grasp.q_grasp[0] += 0.4;
+  EXPECT_TRUE(fault_is("called a synergy grasp with a slack of 0.4 rad"));
+  grasp = cube_grasp();
+  box.half_width[0] = 0.02;
+  EXPECT_TRUE(fault_is("a synergy coefficient is 0.01 outside its box"));
+}
+
+TEST_F(CheckGrasp, NotPositivelySpanning) {
+  grasp.contacts.pop_back();
+  grasp.contacts.pop_back();  // two points: the object turns about the line through them
+  EXPECT_TRUE(fault_is("stored as force closure, but its wrenches do not positively span"));
+  grasp.quality.state = ClosureState::not_force_closure;
+  EXPECT_TRUE(fault_is("not a force-closure grasp"));
+  grasp = cube_grasp();
+  grasp.quality.state = ClosureState::not_force_closure;
+  EXPECT_TRUE(fault_is("not stored as force closure, but its wrenches positively span"));
+}
+
+TEST(PositiveSpan, KnownCases) {
+  const QualityConvention convention = cube_grasp().quality.convention;
+  const std::vector<Contact> four = cube_grasp().contacts;
+  const PositiveSpan all = positive_span(four, convention);
+  EXPECT_TRUE(all.spans);
+  EXPECT_EQ(all.wrenches, 64);
+  EXPECT_LT(all.residual, 1e-12);
+
+  std::vector<Contact> frictionless = four;
+  for (Contact& contact : frictionless) contact.mu = 0.0;
+  EXPECT_FALSE(positive_span(frictionless, convention).spans);
+  const std::vector<Contact> opposed(four.begin(), four.begin() + 2);
+  const PositiveSpan line = positive_span(opposed, convention);
+  EXPECT_FALSE(line.spans);
+  EXPECT_LT(line.rank_ratio, 1e-12);  // no torque about the line
+  EXPECT_LT(line.residual, 1e-12);    // though W a = 0 has a solution
+  std::vector<Contact> one_side = four;
+  for (Contact& contact : one_side) contact.n_O = Eigen::Vector3d::UnitZ();
+  const PositiveSpan pushing = positive_span(one_side, convention);
+  EXPECT_FALSE(pushing.spans);
+  EXPECT_GT(pushing.residual, 0.1);
+  EXPECT_FALSE(positive_span({}, convention).spans);
+}
+
+TEST(PositiveSpan, FrictionDecidesAtTheAngleOfTheCone) {
+  // Two opposed rows of contacts on a wedge of half angle 0.2: held exactly when mu exceeds tan 0.2.
+  const auto held = [](double mu) {
+    std::vector<Contact> contacts;
+    for (const double side : {-1.0, 1.0}) {
+      for (const Eigen::Vector2d at :
+           {Eigen::Vector2d(0.01, 0), Eigen::Vector2d(-0.01, 0.01), Eigen::Vector2d(0, -0.01)}) {
+        contacts.push_back(
+            {"l", {side * 0.02, at.x(), at.y()}, Eigen::Vector3d(-side * std::cos(0.2), 0, std::sin(0.2)), mu});
+      }
+    }
+    QualityConvention convention;
+    convention.rho = 0.02;
+    convention.edges = 16;
+    return positive_span(contacts, convention).spans;
+  };
+  EXPECT_FALSE(held(0.98 * std::tan(0.2)));
+  EXPECT_TRUE(held(1.05 * std::tan(0.2)));
+}
+
+}  // namespace
+}  // namespace opponens::verify

@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "verify/solid.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/rng.hpp"
+#include "robot/mesh.hpp"
+
+namespace opponens::verify {
+namespace {
+
+TEST(Solid, BoxInsideAndDistance) {
+  const Solid box(robot::Box{Eigen::Vector3d(2, 4, 6)});
+  EXPECT_TRUE(box.closed());
+  Rng rng = stream(2, "test/solid");
+  int inside = 0;
+  for (int trial = 0; trial < 2000; ++trial) {
+    const Eigen::Vector3d p(rng.uniform(-2, 2), rng.uniform(-4, 4), rng.uniform(-5, 5));
+    const Eigen::Vector3d d = p.cwiseAbs() - Eigen::Vector3d(1, 2, 3);
+    const bool in = (d.array() < 0.0).all();
+    ASSERT_EQ(box.inside(p), in) << p.transpose();
+    const double expected = in ? -d.maxCoeff() : d.cwiseMax(0.0).norm();
+    ASSERT_NEAR(box.distance(p), expected, 1e-12);
+    ASSERT_NEAR(box.depth(p), in ? expected : 0.0, 1e-12);
+    inside += in ? 1 : 0;
+  }
+  EXPECT_GT(inside, 100);
+  EXPECT_TRUE(box.inside(Eigen::Vector3d::Zero()));  // rays from the middle meet edges of the triangulation easily
+}
+
+TEST(Solid, ShellIsHollow) {
+  robot::TriangleMesh shell = robot::triangulate(robot::Box{Eigen::Vector3d(2, 2, 2)});
+  const robot::TriangleMesh cavity = robot::triangulate(robot::Box{Eigen::Vector3d(1, 1, 1)});
+  const Eigen::Index vertices = shell.vertices.cols();
+  const Eigen::Index triangles = shell.triangles.cols();
+  shell.vertices.conservativeResize(3, vertices + cavity.vertices.cols());
+  shell.vertices.rightCols(cavity.vertices.cols()) = cavity.vertices;
+  shell.triangles.conservativeResize(3, triangles + cavity.triangles.cols());
+  shell.triangles.rightCols(cavity.triangles.cols()) = cavity.triangles.array() + static_cast<int>(vertices);
+  shell.triangles.rightCols(cavity.triangles.cols())
+      .row(1)
+      .swap(shell.triangles.rightCols(cavity.triangles.cols()).row(2));
+  const Solid solid(std::make_shared<const robot::TriangleMesh>(shell));
+  EXPECT_FALSE(solid.inside({0.1, 0.2, 0.3}));
+  EXPECT_TRUE(solid.inside({0.7, 0.1, 0.2}));
+  EXPECT_FALSE(solid.inside({1.1, 0.1, 0.2}));
+}
+
+TEST(Solid, OpenMeshHasNoInside) {
+  robot::TriangleMesh open = robot::triangulate(robot::Box{Eigen::Vector3d(2, 2, 2)});
+  open.triangles.conservativeResize(3, open.triangles.cols() - 1);
+  const Solid solid(std::make_shared<const robot::TriangleMesh>(open));
+  EXPECT_FALSE(solid.closed());
+  EXPECT_FALSE(solid.inside({0.1, 0.2, 0.3}));
+}
+
+TEST(Solid, NormalAngle) {
+  const Solid box(robot::Box{Eigen::Vector3d(2, 2, 2)});
+  const Eigen::Vector3d on_face(1, 0.2, 0.3);
+  EXPECT_NEAR(box.normal_angle(on_face, {1, 0, 0}, 1e-3), 0.0, 1e-7);
+  EXPECT_NEAR(box.normal_angle(on_face, {1, 1, 0}, 1e-3), std::numbers::pi / 4, 1e-12);
+  EXPECT_NEAR(box.normal_angle(on_face, {-1, 0, 0}, 1e-3), std::numbers::pi, 1e-7);
+  EXPECT_NEAR(box.normal_angle({1, 1, 0.3}, {0, 1, 0}, 1e-3), 0.0, 1e-7);  // at an edge either face will do
+  EXPECT_EQ(box.normal_angle({3, 0, 0}, {1, 0, 0}, 1e-3), std::numbers::pi);
+}
+
+}  // namespace
+}  // namespace opponens::verify

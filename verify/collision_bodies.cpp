@@ -1,0 +1,170 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "verify/collision_bodies.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include <fcl/geometry/bvh/BVH_model.h>
+#include <fcl/narrowphase/collision.h>
+#include <fcl/narrowphase/distance.h>
+
+#include "robot/mesh.hpp"
+#include "verify/solid.hpp"
+
+namespace opponens::verify {
+namespace {
+
+using CollisionGeometry = std::shared_ptr<fcl::CollisionGeometryd>;
+
+CollisionGeometry geometry_of(const robot::Shape& shape) {
+  if (const auto* box = std::get_if<robot::Box>(&shape)) return std::make_shared<fcl::Boxd>(box->size);
+  if (const auto* sphere = std::get_if<robot::Sphere>(&shape)) return std::make_shared<fcl::Sphered>(sphere->radius);
+  if (const auto* cylinder = std::get_if<robot::Cylinder>(&shape)) {
+    return std::make_shared<fcl::Cylinderd>(cylinder->radius, cylinder->length);
+  }
+  const robot::TriangleMesh& mesh = *std::get<std::shared_ptr<const robot::TriangleMesh>>(shape);
+  auto model = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
+  model->beginModel(static_cast<int>(mesh.triangles.cols()), static_cast<int>(mesh.vertices.cols()));
+  for (const auto& t : mesh.triangles.colwise()) {
+    model->addTriangle(mesh.vertices.col(t[0]), mesh.vertices.col(t[1]), mesh.vertices.col(t[2]));
+  }
+  model->endModel();
+  return model;
+}
+
+bool is_mesh(const robot::Shape& shape) {
+  return std::holds_alternative<std::shared_ptr<const robot::TriangleMesh>>(shape);
+}
+
+}  // namespace
+
+struct CollisionBodies::Part {
+  std::string name;
+  int link;                  ///< -1: a scene body
+  robot::Geometry geometry;  ///< X_BG: in the link, or in the scene body
+  std::shared_ptr<const Solid> solid;
+  fcl::CollisionObjectd object;
+  Eigen::Matrix3Xd samples;  ///< [3 x S] m, surface points in G; links only, made when first asked for
+
+  Eigen::Isometry3d X_WG() const { return object.getTransform(); }
+
+  /// A point inside the shape and on none of its surfaces: enough to find a shape that lies wholly within another.
+  bool reaches_into(const Part& other) const {
+    const Eigen::Isometry3d X = other.X_WG().inverse() * X_WG();
+    if (!is_mesh(geometry.shape)) return other.solid->inside(X.translation());
+    for (const auto& point : solid->component_points().colwise()) {
+      if (other.solid->inside(X * point)) return true;
+    }
+    return false;
+  }
+};
+
+struct CollisionBodies::Data {
+  const robot::RobotModel& robot;
+  Eigen::Isometry3d X_WR;
+  std::vector<Part> parts;                 ///< links first
+  std::vector<std::pair<int, int>> pairs;  ///< indices into parts that must not touch
+
+  bool collide(const Part& a, const Part& b) const {
+    fcl::CollisionRequestd request;
+    fcl::CollisionResultd result;
+    fcl::collide(&a.object, &b.object, request, result);
+    // FCL's primitives are solid against everything; a mesh is a surface only.
+    return result.isCollision() || (is_mesh(b.geometry.shape) && a.reaches_into(b)) ||
+           (is_mesh(a.geometry.shape) && b.reaches_into(a));
+  }
+};
+
+CollisionBodies::CollisionBodies(const robot::RobotModel& robot, const robot::Scene& scene)
+    : data_(std::make_unique<Data>(Data{robot, scene.X_WR, {}, {}})) {
+  std::map<const robot::TriangleMesh*, std::pair<CollisionGeometry, std::shared_ptr<const Solid>>> meshes;
+  const auto add = [&](const std::string& name, int link, const robot::Geometry& geometry, const Eigen::Isometry3d& X) {
+    const auto* mesh = std::get_if<std::shared_ptr<const robot::TriangleMesh>>(&geometry.shape);
+    const auto make = [&] {
+      return std::pair(geometry_of(geometry.shape), std::make_shared<const Solid>(geometry.shape));
+    };
+    const auto made = mesh == nullptr ? make() : meshes.count(mesh->get()) == 1 ? meshes[mesh->get()] : make();
+    if (mesh != nullptr) meshes[mesh->get()] = made;
+    data_->parts.push_back({name, link, geometry, made.second, fcl::CollisionObjectd(made.first, X), {}});
+  };
+  for (std::size_t l = 0; l < robot.links().size(); ++l) {
+    for (const robot::Geometry& g : robot.links()[l].collision) {
+      add(robot.links()[l].name, static_cast<int>(l), g, Eigen::Isometry3d::Identity());
+    }
+  }
+  for (const robot::SceneBody& body : scene.bodies) {
+    for (const robot::Geometry& g : body.geometry) add(body.name, -1, g, body.X_WB * g.X_BG);
+  }
+  const int count = static_cast<int>(data_->parts.size());
+  for (int i = 0; i < count; ++i) {
+    for (int j = i + 1; j < count; ++j) {
+      const Part& a = data_->parts[static_cast<std::size_t>(i)];
+      const Part& b = data_->parts[static_cast<std::size_t>(j)];
+      if (a.link < 0 || a.link == b.link) continue;
+      const std::pair<int, int> links = std::minmax(a.link, b.link);
+      if (b.link >= 0 && robot.description().allowed_collisions.count(links) == 1) continue;
+      data_->pairs.emplace_back(i, j);
+    }
+  }
+}
+
+CollisionBodies::~CollisionBodies() = default;
+
+void CollisionBodies::set(const Eigen::VectorXd& q) {
+  const std::vector<Eigen::Isometry3d> X_RL = data_->robot.link_poses(q);
+  for (Part& part : data_->parts) {
+    if (part.link >= 0) {
+      part.object.setTransform(data_->X_WR * X_RL[static_cast<std::size_t>(part.link)] * part.geometry.X_BG);
+    }
+    part.object.computeAABB();
+  }
+}
+
+std::set<CollisionBodies::Pair> CollisionBodies::colliding() const {
+  std::set<Pair> found;
+  for (const auto& [i, j] : data_->pairs) {
+    const Part& a = data_->parts[static_cast<std::size_t>(i)];
+    const Part& b = data_->parts[static_cast<std::size_t>(j)];
+    if (!a.object.getAABB().overlap(b.object.getAABB())) continue;
+    if (found.count({a.name, b.name}) == 0 && data_->collide(a, b)) found.emplace(a.name, b.name);
+  }
+  return found;
+}
+
+double CollisionBodies::clearance(const std::set<Pair>& except, double horizon) const {
+  double least = horizon;
+  for (const auto& [i, j] : data_->pairs) {
+    const Part& a = data_->parts[static_cast<std::size_t>(i)];
+    const Part& b = data_->parts[static_cast<std::size_t>(j)];
+    if (except.count({a.name, b.name}) == 1 || a.object.getAABB().distance(b.object.getAABB()) >= least) continue;
+    fcl::DistanceRequestd request;
+    fcl::DistanceResultd result;
+    fcl::distance(&a.object, &b.object, request, result);
+    least = std::min(least, std::max(0.0, result.min_distance));
+  }
+  return least;
+}
+
+double CollisionBodies::penetration(const std::string& link, const std::string& body) const {
+  double depth = 0.0;
+  for (Part& a : data_->parts) {
+    if (a.name != link || a.link < 0) continue;
+    for (const Part& b : data_->parts) {
+      if (b.name != body || b.link >= 0) continue;
+      if (!a.object.getAABB().overlap(b.object.getAABB()) || !data_->collide(a, b)) continue;
+      if (a.samples.cols() == 0) {
+        const auto points = robot::surface_samples({a.geometry.shape, Eigen::Isometry3d::Identity()}, 0.002);
+        a.samples.resize(3, static_cast<Eigen::Index>(points.size()));
+        for (std::size_t i = 0; i < points.size(); ++i) a.samples.col(static_cast<Eigen::Index>(i)) = points[i];
+      }
+      const Eigen::Isometry3d X_BA = b.X_WG().inverse() * a.X_WG();
+      for (const auto& point : a.samples.colwise()) depth = std::max(depth, b.solid->depth(X_BA * point));
+      const Eigen::Isometry3d X_AB = X_BA.inverse();
+      for (const auto& point : b.solid->vertices().colwise()) depth = std::max(depth, a.solid->depth(X_AB * point));
+    }
+  }
+  return depth;
+}
+
+}  // namespace opponens::verify
