@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/fingertip_fit.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include <ceres/ceres.h>
@@ -13,6 +15,7 @@ namespace {
 
 constexpr double kCentimetres = 100.0;  ///< residuals are in cm, so that weights in rad compare with them
 constexpr int kRounds = 20;             ///< of the active set; two or three are usual
+constexpr int kSweeps = 30;             ///< of the start values' coordinate descent
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -23,8 +26,9 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 /// only the last term changes with that joint, and it can vanish.
 class TipError {
  public:
-  TipError(const Eigen::Vector3d& origin, const Eigen::Vector3d& axis, const Eigen::Vector3d& p,
-           const Eigen::Vector3d& target)
+  TipError(const Eigen::Vector3d& p, const Eigen::Vector3d& target) : plain_(p - target) {}
+  TipError(const Eigen::Vector3d& p, const Eigen::Vector3d& target, const Eigen::Vector3d& origin,
+           const Eigen::Vector3d& axis)
       : axis_(axis), plain_(p - target) {
     const Eigen::Vector3d flat = p - origin - axis.dot(p - origin) * axis;
     const Eigen::Vector3d flat_target = target - origin - axis.dot(target - origin) * axis;
@@ -33,11 +37,10 @@ class TipError {
     cylindrical_ = r > kOnAxis && r_target > kOnAxis;
     if (!cylindrical_) return;
     along_ = flat / r;
-    around_ = axis.cross(along_);
     const double half = 0.5 * std::atan2(axis.dot(flat_target.cross(flat)), flat_target.dot(flat));  // (phi - phi*) / 2
     const double root = std::sqrt(r_target / r);
     residual_ = {r - r_target, axis.dot(p - target), 2.0 * root * r * std::sin(half)};
-    slope_ = root * (std::sin(half) * along_ + std::cos(half) * around_);
+    slope_ = root * (std::sin(half) * along_ + std::cos(half) * axis.cross(along_));
   }
 
   Eigen::Vector3d residual() const { return cylindrical_ ? residual_ : plain_; }
@@ -47,13 +50,12 @@ class TipError {
 
  private:
   static constexpr double kOnAxis = 1e-6;  ///< m: there the plain difference, of the same square, is used
-  Eigen::Vector3d axis_;
+  Eigen::Vector3d axis_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d plain_;
   bool cylindrical_ = false;
-  Eigen::Vector3d along_;
-  Eigen::Vector3d around_;
-  Eigen::Vector3d residual_;
-  Eigen::Vector3d slope_;
+  Eigen::Vector3d along_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d residual_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d slope_ = Eigen::Vector3d::Zero();
 };
 
 /// 100 TipError of all tips in one sample, x the fitted joints; Jacobian by RobotModel::point_jacobian.
@@ -75,9 +77,7 @@ class TipCost : public ceres::CostFunction {
     for (std::size_t f = 0; f < targets_.size(); ++f) {
       const TipTarget& target = targets_[f];
       const Eigen::Vector3d p_R = X_RL_[static_cast<std::size_t>(target.finger.link)] * target.finger.p_L;
-      const Eigen::Isometry3d X_PC = X_PR * X_RL_[static_cast<std::size_t>(target.turning_link)];
-      const TipError error(X_PC.translation(), X_PC.linear() * target.turning_axis, X_PR * p_R,
-                           target.path.col(sample_));
+      const TipError error = tip_error(target, X_PR, X_PR * p_R);
       Eigen::Map<Eigen::Vector3d> rows(residuals + 3 * f);
       rows = kCentimetres * error.residual();
       if (!wants_jacobian) continue;
@@ -92,6 +92,15 @@ class TipCost : public ceres::CostFunction {
   }
 
  private:
+  TipError tip_error(const TipTarget& target, const Eigen::Isometry3d& X_PR, const Eigen::Vector3d& p) const {
+    const Eigen::Vector3d goal = target.path.col(sample_);
+    if (target.joints.empty()) return {p, goal};
+    const FittedJoint& first = target.turning.at(target.joints.front());
+    if (!first.revolute) return {p, goal};
+    const Eigen::Isometry3d X_PC = X_PR * X_RL_[static_cast<std::size_t>(first.link)];
+    return {p, goal, X_PC.translation(), X_PC.linear() * first.axis};
+  }
+
   const RobotModel& hand_;
   const std::vector<TipTarget>& targets_;
   const std::vector<int>& fitted_;
@@ -129,6 +138,60 @@ class DifferenceCost : public ceres::CostFunction {
   double weight_;
   Eigen::VectorXd rest_;
 };
+
+/// Where the circle on which joint turns its tips is nearest to their targets: the position in [low, high] with the
+/// largest A cos(x) + B sin(x), x the turn from here, A and B summed over the tips. Unchanged where the tips or targets
+/// lie on the axis.
+double best_turn(const RobotModel& hand, const std::vector<TipTarget>& targets, int joint, Eigen::Index sample,
+                 const Eigen::VectorXd& q, const std::vector<Eigen::Isometry3d>& X_RL) {
+  const Eigen::Isometry3d X_PR = X_RL[static_cast<std::size_t>(hand.palm())].inverse();
+  double A = 0.0;
+  double B = 0.0;
+  for (const TipTarget& target : targets) {
+    if (std::find(target.joints.begin(), target.joints.end(), joint) == target.joints.end()) continue;
+    const FittedJoint& turning = target.turning.at(joint);
+    if (!turning.revolute) return q[joint];
+    const Eigen::Isometry3d X_PC = X_PR * X_RL[static_cast<std::size_t>(turning.link)];
+    const Eigen::Vector3d axis = X_PC.linear() * turning.axis;
+    const Eigen::Vector3d tip =
+        X_PR * X_RL[static_cast<std::size_t>(target.finger.link)] * target.finger.p_L - X_PC.translation();
+    const Eigen::Vector3d goal = target.path.col(sample) - X_PC.translation();
+    A += tip.dot(goal) - axis.dot(tip) * axis.dot(goal);
+    B += axis.dot(tip.cross(goal));
+  }
+  if (std::hypot(A, B) < 1e-10) return q[joint];
+  const double low = hand.lower()[joint];
+  const double high = hand.upper()[joint];
+  const double middle = 0.5 * (low + high);
+  const double best = middle + std::remainder(q[joint] + std::atan2(B, A) - middle, 2.0 * std::numbers::pi);
+  if (best >= low && best <= high) return best;
+  const auto value = [&](double at) { return A * std::cos(at - q[joint]) + B * std::sin(at - q[joint]); };
+  return value(low) > value(high) ? low : high;
+}
+
+/// Start values: cyclic coordinate descent, one fitted joint at a time, sample after sample. Exact for a finger with
+/// one fitted joint but for the small weights of smoothness and rest.
+void seed_positions(const RobotModel& hand, const std::vector<TipTarget>& targets, const std::vector<int>& fitted,
+                    Eigen::MatrixXd& q) {
+  std::vector<Eigen::Isometry3d> X_RL;
+  for (Eigen::Index t = 0; t < q.cols(); ++t) {
+    if (t > 0) {
+      for (const int joint : fitted) q(joint, t) = q(joint, t - 1);
+    }
+    Eigen::VectorXd position = q.col(t);
+    for (int sweep = 0; sweep < kSweeps; ++sweep) {
+      double change = 0.0;
+      for (const int joint : fitted) {
+        hand.link_poses(position, X_RL);
+        const double best = best_turn(hand, targets, joint, t, position, X_RL);
+        change = std::max(change, std::abs(best - position[joint]));
+        position[joint] = best;
+      }
+      if (change < 1e-4) break;
+    }
+    q.col(t) = position;
+  }
+}
 
 /// The fitted joints of all samples as one Ceres problem with bounds. Ceres clips steps to the bounds but solves for
 /// them as if there were none, which creeps where many samples lie on a bound; so positions that the gradient pushes
@@ -226,6 +289,7 @@ std::optional<Failure> fit_fingertips(const RobotModel& hand, const std::vector<
                                       const std::vector<int>& fitted, const RetargetSettings& settings,
                                       Eigen::MatrixXd& q) {
   if (fitted.empty() || q.cols() == 0) return std::nullopt;
+  seed_positions(hand, targets, fitted, q);
   FingertipProblem problem(hand, targets, fitted, settings, q);
   if (const auto reason = problem.solve(settings.max_iterations)) {
     return Failure{FailureCode::not_converged, "fingertip fit: " + *reason};

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -11,13 +12,19 @@
 
 namespace opponens::robot {
 
+/// A fitted joint as seen from a fingertip.
+struct FittedJoint {
+  int link = -1;         ///< the joint's child link: its origin lies on the axis
+  Eigen::Vector3d axis;  ///< unit, in that link
+  bool revolute = true;
+};
+
 /// Where a robot finger's tip should be.
 struct TipTarget {
   Finger finger;
-  std::vector<int> joints;  ///< indices into q of the fitted joints that move it
-  Eigen::Matrix3Xd path;    ///< [3 x T] m, palm frame
-  int turning_link = 0;     ///< link that the first of them (from the palm) turns; its origin lies on the axis
-  Eigen::Vector3d turning_axis = Eigen::Vector3d::UnitZ();  ///< of that joint, unit, in that link
+  std::vector<int> joints;             ///< indices into q of the fitted joints that move it, palm first
+  std::map<int, FittedJoint> turning;  ///< by index into q
+  Eigen::Matrix3Xd path;               ///< [3 x T] m, palm frame
 };
 
 /// Moves the fitted joints' rows of q [d x T] so that the tips follow their targets (the problem of retarget()). Starts

@@ -74,18 +74,16 @@ Result<std::vector<int>> fitted_joints(const RobotModel& hand, const HandMapping
   return fitted;
 }
 
-/// The first joint from the palm that is fitted and turns; the palm itself where there is none.
-void find_turning_link(const RobotModel& hand, TipTarget& target) {
-  target.turning_link = hand.palm();
+/// The fitted joints between palm and tip. A joint that only drives others (mimic) is not among them and stays
+/// unfitted.
+void find_fitted_joints(const RobotModel& hand, const std::vector<int>& fitted, TipTarget& target) {
   for (int link = target.finger.link; link != hand.palm() && hand.links()[static_cast<std::size_t>(link)].joint >= 0;) {
     const Joint& joint =
         hand.description().joints[static_cast<std::size_t>(hand.links()[static_cast<std::size_t>(link)].joint)];
-    const bool fitted = std::any_of(target.joints.begin(), target.joints.end(), [&](int index) {
-      return hand.joint_names()[static_cast<std::size_t>(index)] == joint.name;
-    });
-    if (fitted && joint.type == JointType::revolute) {
-      target.turning_link = joint.child;
-      target.turning_axis = joint.axis;
+    const std::optional<int> index = index_of(hand.joint_names(), joint.name);
+    if (index && std::find(fitted.begin(), fitted.end(), *index) != fitted.end()) {
+      target.joints.insert(target.joints.begin(), *index);
+      target.turning[*index] = {joint.child, joint.axis, joint.type == JointType::revolute};
     }
     link = joint.parent;
   }
@@ -102,13 +100,10 @@ Result<std::vector<TipTarget>> tip_targets(const RobotModel& human, const Eigen:
     if (!robot_tip) return failure(FailureCode::not_found, "the robot hand has no tip '" + robot_name + "'");
     if (!human_tip) return failure(FailureCode::not_found, "the human hand has no tip '" + human_name + "'");
     const Finger theirs = finger_of(human, *human_tip);
-    TipTarget target{finger_of(hand, *robot_tip), {}, {}};
+    TipTarget target{finger_of(hand, *robot_tip), {}, {}, {}};
     const Eigen::Matrix3d turned = (target.finger.length / theirs.length) * mapping.R_robot_human;
     target.path = (turned * (tip_path(human, theirs, q_human).colwise() - theirs.base)).colwise() + target.finger.base;
-    const std::vector<int>& movers = target.finger.moved_by;
-    std::copy_if(fitted.begin(), fitted.end(), std::back_inserter(target.joints),
-                 [&](int joint) { return std::find(movers.begin(), movers.end(), joint) != movers.end(); });
-    find_turning_link(hand, target);
+    find_fitted_joints(hand, fitted, target);
     targets.push_back(std::move(target));
   }
   for (const int joint : fitted) {

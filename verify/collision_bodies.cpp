@@ -17,13 +17,7 @@ namespace {
 
 using CollisionGeometry = std::shared_ptr<fcl::CollisionGeometryd>;
 
-CollisionGeometry geometry_of(const robot::Shape& shape) {
-  if (const auto* box = std::get_if<robot::Box>(&shape)) return std::make_shared<fcl::Boxd>(box->size);
-  if (const auto* sphere = std::get_if<robot::Sphere>(&shape)) return std::make_shared<fcl::Sphered>(sphere->radius);
-  if (const auto* cylinder = std::get_if<robot::Cylinder>(&shape)) {
-    return std::make_shared<fcl::Cylinderd>(cylinder->radius, cylinder->length);
-  }
-  const robot::TriangleMesh& mesh = *std::get<std::shared_ptr<const robot::TriangleMesh>>(shape);
+CollisionGeometry mesh_of(const robot::TriangleMesh& mesh) {
   auto model = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
   model->beginModel(static_cast<int>(mesh.triangles.cols()), static_cast<int>(mesh.vertices.cols()));
   for (const auto& t : mesh.triangles.colwise()) {
@@ -31,6 +25,15 @@ CollisionGeometry geometry_of(const robot::Shape& shape) {
   }
   model->endModel();
   return model;
+}
+
+CollisionGeometry geometry_of(const robot::Shape& shape) {
+  if (const auto* box = std::get_if<robot::Box>(&shape)) return std::make_shared<fcl::Boxd>(box->size);
+  if (const auto* sphere = std::get_if<robot::Sphere>(&shape)) return std::make_shared<fcl::Sphered>(sphere->radius);
+  if (const auto* cylinder = std::get_if<robot::Cylinder>(&shape)) {
+    return std::make_shared<fcl::Cylinderd>(cylinder->radius, cylinder->length);
+  }
+  return mesh_of(*std::get<std::shared_ptr<const robot::TriangleMesh>>(shape));
 }
 
 bool is_mesh(const robot::Shape& shape) {
@@ -44,8 +47,9 @@ struct CollisionBodies::Part {
   int link;                  ///< -1: a scene body
   robot::Geometry geometry;  ///< X_BG: in the link, or in the scene body
   std::shared_ptr<const Solid> solid;
-  fcl::CollisionObjectd object;
-  Eigen::Matrix3Xd samples;  ///< [3 x S] m, surface points in G; links only, made when first asked for
+  fcl::CollisionObjectd object;   ///< primitives as such
+  fcl::CollisionObjectd surface;  ///< triangles
+  Eigen::Matrix3Xd samples;       ///< [3 x S] m, surface points in G; links only, made when first asked for
 
   Eigen::Isometry3d X_WG() const { return object.getTransform(); }
 
@@ -78,15 +82,28 @@ struct CollisionBodies::Data {
 
 CollisionBodies::CollisionBodies(const robot::RobotModel& robot, const robot::Scene& scene)
     : data_(std::make_unique<Data>(Data{robot, scene.X_WR, {}, {}})) {
-  std::map<const robot::TriangleMesh*, std::pair<CollisionGeometry, std::shared_ptr<const Solid>>> meshes;
+  struct Made {
+    CollisionGeometry geometry;
+    CollisionGeometry surface;
+    std::shared_ptr<const Solid> solid;
+  };
+  std::map<const robot::TriangleMesh*, Made> meshes;  // the links of a hand share theirs
   const auto add = [&](const std::string& name, int link, const robot::Geometry& geometry, const Eigen::Isometry3d& X) {
     const auto* mesh = std::get_if<std::shared_ptr<const robot::TriangleMesh>>(&geometry.shape);
-    const auto make = [&] {
-      return std::pair(geometry_of(geometry.shape), std::make_shared<const Solid>(geometry.shape));
-    };
-    const auto made = mesh == nullptr ? make() : meshes.count(mesh->get()) == 1 ? meshes[mesh->get()] : make();
-    if (mesh != nullptr) meshes[mesh->get()] = made;
-    data_->parts.push_back({name, link, geometry, made.second, fcl::CollisionObjectd(made.first, X), {}});
+    Made made = mesh != nullptr ? meshes[mesh->get()] : Made{};
+    if (!made.geometry) {
+      made.geometry = geometry_of(geometry.shape);
+      made.solid = std::make_shared<const Solid>(geometry.shape);
+      made.surface = mesh != nullptr ? made.geometry : mesh_of(made.solid->mesh());
+      if (mesh != nullptr) meshes[mesh->get()] = made;
+    }
+    data_->parts.push_back({name,
+                            link,
+                            geometry,
+                            made.solid,
+                            fcl::CollisionObjectd(made.geometry, X),
+                            fcl::CollisionObjectd(made.surface, X),
+                            {}});
   };
   for (std::size_t l = 0; l < robot.links().size(); ++l) {
     for (const robot::Geometry& g : robot.links()[l].collision) {
@@ -115,9 +132,12 @@ void CollisionBodies::set(const Eigen::VectorXd& q) {
   const std::vector<Eigen::Isometry3d> X_RL = data_->robot.link_poses(q);
   for (Part& part : data_->parts) {
     if (part.link >= 0) {
-      part.object.setTransform(data_->X_WR * X_RL[static_cast<std::size_t>(part.link)] * part.geometry.X_BG);
+      const Eigen::Isometry3d X_WG = data_->X_WR * X_RL[static_cast<std::size_t>(part.link)] * part.geometry.X_BG;
+      part.object.setTransform(X_WG);
+      part.surface.setTransform(X_WG);
     }
     part.object.computeAABB();
+    part.surface.computeAABB();
   }
 }
 
@@ -140,7 +160,8 @@ double CollisionBodies::clearance(const std::set<Pair>& except, double horizon) 
     if (except.count({a.name, b.name}) == 1 || a.object.getAABB().distance(b.object.getAABB()) >= least) continue;
     fcl::DistanceRequestd request;
     fcl::DistanceResultd result;
-    fcl::distance(&a.object, &b.object, request, result);
+    // Between triangles: FCL's distance between primitives (GJK) is off by millimetres for some poses of cylinders.
+    fcl::distance(&a.surface, &b.surface, request, result);
     least = std::min(least, std::max(0.0, result.min_distance));
   }
   return least;
@@ -161,7 +182,8 @@ double CollisionBodies::penetration(const std::string& link, const std::string& 
       const Eigen::Isometry3d X_BA = b.X_WG().inverse() * a.X_WG();
       for (const auto& point : a.samples.colwise()) depth = std::max(depth, b.solid->depth(X_BA * point));
       const Eigen::Isometry3d X_AB = X_BA.inverse();
-      for (const auto& point : b.solid->vertices().colwise()) depth = std::max(depth, a.solid->depth(X_AB * point));
+      for (const auto& point : b.solid->mesh().vertices.colwise())
+        depth = std::max(depth, a.solid->depth(X_AB * point));
     }
   }
   return depth;

@@ -115,6 +115,23 @@ double surface_distance(const std::vector<PlacedSolid>& solids, const Eigen::Vec
   return least;
 }
 
+/// Whether the contacts are such at all.
+bool check_contact_form(const Grasp& grasp, double tolerance, Verdict& verdict) {
+  bool right = true;
+  for (std::size_t i = 0; i < grasp.contacts.size(); ++i) {
+    const Contact& contact = grasp.contacts[i];
+    if (contact.p_OC.allFinite() && std::abs(contact.n_O.norm() - 1.0) <= tolerance && contact.mu >= 0.0 &&
+        std::isfinite(contact.mu)) {
+      continue;
+    }
+    right = false;
+    verdict.fail("contact " + std::to_string(i) + " (" + contact.link +
+                 "): position, normal or friction coefficient is no such thing; |n| = " + number(contact.n_O.norm()) +
+                 ", mu = " + number(contact.mu));
+  }
+  return right;
+}
+
 void check_contacts(const Grasp& grasp, const GraspContext& context, const GraspCheckSettings& settings,
                     Verdict& verdict) {
   const auto object = place(context.object->geometry, Eigen::Isometry3d::Identity());
@@ -123,12 +140,6 @@ void check_contacts(const Grasp& grasp, const GraspContext& context, const Grasp
   for (std::size_t i = 0; i < grasp.contacts.size(); ++i) {
     const Contact& contact = grasp.contacts[i];
     const std::string name = "contact " + std::to_string(i) + " (" + contact.link + ")";
-    if (!contact.p_OC.allFinite() || !(std::abs(contact.n_O.norm() - 1.0) <= settings.tolerance) ||
-        !(contact.mu >= 0.0 && std::isfinite(contact.mu))) {
-      verdict.fail(name +
-                   ": position, normal or friction coefficient is no such thing; |n| = " + number(contact.n_O.norm()));
-      continue;
-    }
     const double off_object = surface_distance(object, contact.p_OC);
     if (!(off_object <= settings.contact_distance)) {
       verdict.fail(name + " is " + number(1e3 * off_object) + " mm off the object's surface");
@@ -190,6 +201,7 @@ Verdict check_grasp(const Grasp& grasp, const GraspContext& context, const Grasp
   if (!check_limits(grasp, *context.hand, settings.tolerance, verdict)) return verdict;
   check_synergies(grasp, *context.box, settings, verdict);
   if (!verdict.ok) return verdict;  // surfaces and wrenches of a grasp that is not itself would only add noise
+  if (!check_contact_form(grasp, settings.tolerance, verdict)) return verdict;
   check_contacts(grasp, context, settings, verdict);
   if (!(grasp.quality.convention.rho > 0.0)) {
     verdict.fail("the quality's torque scale rho = " + number(grasp.quality.convention.rho) + " m is not positive");

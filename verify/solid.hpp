@@ -26,7 +26,7 @@ class Solid {
   double normal_angle(const Eigen::Vector3d& p, const Eigen::Vector3d& direction, double reach) const;
 
   bool closed() const { return closed_; }
-  const Eigen::Matrix3Xd& vertices() const { return mesh_.vertices; }
+  const robot::TriangleMesh& mesh() const { return mesh_; }
   /// One vertex of each connected component.
   const Eigen::Matrix3Xd& component_points() const { return component_points_; }
 

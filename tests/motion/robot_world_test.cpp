@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <numbers>
+#include <set>
 
 #include "core/rng.hpp"
 #include "motion/closing_segment.hpp"
@@ -131,9 +132,11 @@ TEST_F(RobotWorld, ReachSaysWhyNot) {
 TEST_F(RobotWorld, ContactDepthOfAFingertipInTheBottle) {
   auto grasp = reachable();
   ASSERT_TRUE(grasp);
-  std::vector<std::string> hand;
-  for (const auto& link : robot.links()) hand.push_back(link.name);
-  const ContactDepth depth(robot, scene, "bottle", hand);
+  std::set<std::string> hand;
+  for (const auto& point : robot.description().contact_points) {
+    hand.insert(robot.links()[static_cast<std::size_t>(point.link)].name);
+  }
+  const ContactDepth depth(robot, scene, "bottle", {hand.begin(), hand.end()});
   const Eigen::VectorXd clear = join(robot, grasp->arm_solutions[0].q_grasp, grasp->q_grasp);
   EXPECT_EQ(depth(clear), 0.0);
   // The bottle moved so that its axis runs through a tip: the depth is what FCL's truth sees as a collision.

@@ -27,8 +27,7 @@ TEST(KilledWriter, NothingAcknowledgedIsLostAndNothingIsDamaged) {
   std::set<int> acknowledged;
   int leftovers = 0;
   int first = 0;
-  std::uint64_t commit_us =
-      20000;  // as last measured: the kill comes within about one commit after an acknowledged one
+  std::uint64_t commit_us = 20000;  // as last measured; each kill comes within one commit's time of an acknowledged one
   for (int kills = 0; kills < 120; ++kills) {
     int ends[2];
     ASSERT_EQ(::pipe(ends), 0);

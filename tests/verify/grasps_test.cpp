@@ -128,7 +128,7 @@ TEST(PositiveSpan, FrictionDecidesAtTheAngleOfTheCone) {
   const auto held = [](double mu) {
     std::vector<Contact> contacts;
     for (const double side : {-1.0, 1.0}) {
-      for (const Eigen::Vector2d at :
+      for (const Eigen::Vector2d& at :
            {Eigen::Vector2d(0.01, 0), Eigen::Vector2d(-0.01, 0.01), Eigen::Vector2d(0, -0.01)}) {
         contacts.push_back(
             {"l", {side * 0.02, at.x(), at.y()}, Eigen::Vector3d(-side * std::cos(0.2), 0, std::sin(0.2)), mu});

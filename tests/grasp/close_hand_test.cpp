@@ -1,0 +1,122 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grasp/close_hand.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "allegro.hpp"
+#include "analysis/synergy_box.hpp"
+#include "grasp/grasp_check.hpp"
+#include "recheck.hpp"
+
+namespace opponens::grasp {
+namespace {
+
+struct Workbench {
+  explicit Workbench(const robot::Scene& given)
+      : scene(given),
+        target(make_target(scene, "object", 2)),
+        surface(hand_surface(test::allegro(), synergies.group.box.center)),
+        direction(closing_direction(synergies.group.box, synergies.pre_grasp)),
+        closing{test::allegro(), surface, target, synergies.group.box, direction} {}
+
+  robot::Scene scene;
+  test::Synergies synergies = test::power_synergies();
+  GraspTarget target;
+  HandSurface surface;
+  Eigen::VectorXd direction;
+  ClosingScene closing;
+};
+
+/// A ball in front of the palm, fingers open.
+HandPose before_a_ball(const Workbench& bench, double distance) {
+  HandPose pose;
+  pose.q = test::allegro().clip(bench.synergies.pre_grasp.center);
+  pose.X_OH.translation() = -(bench.surface.palm_center + distance * bench.surface.approach);
+  return pose;
+}
+
+TEST(ClosingDirection, PointsFromPreGraspToGraspWithUnitLargestJoint) {
+  const test::Synergies synergies = test::power_synergies();
+  const Eigen::VectorXd v = closing_direction(synergies.group.box, synergies.pre_grasp);
+  EXPECT_NEAR(v.cwiseAbs().maxCoeff(), 1.0, 1e-12);
+  EXPECT_GT(v.dot(synergies.group.box.center - synergies.pre_grasp.center), 0.0);
+  EXPECT_EQ(closing_direction(synergies.group.box, synergies.group.box).norm(), 0.0);
+}
+
+TEST(CloseHand, FingersAndPalmTouchABallWithoutEnteringIt) {
+  const Workbench bench(test::scene_of(robot::Sphere{0.04}));
+  const auto closed = close_hand(bench.closing, before_a_ball(bench, 0.045));
+  ASSERT_TRUE(closed.has_value());
+  EXPECT_TRUE(test::allegro().within_limits(closed->q));
+  const std::vector<Contact> contacts = find_contacts(bench.closing, *closed, 0.001, 0.5);
+  std::set<std::string> links;
+  for (const Contact& contact : contacts) links.insert(contact.link);
+  EXPECT_TRUE(links.contains("palm_link"));
+  EXPECT_GE(links.size(), 4u);
+  for (std::size_t link = 0; link < test::allegro().links().size(); ++link) {
+    EXPECT_GT(test::least_distance(test::allegro(), closed->X_OH, closed->q, link, *bench.target.distance), -0.001);
+  }
+}
+
+TEST(CloseHand, DrawsBackAndOpensWhenItStartsInsideTheObject) {
+  const Workbench bench(test::scene_of(robot::Sphere{0.04}));
+  HandPose start = before_a_ball(bench, 0.03);  // 1 cm too near
+  start.q += 0.3 * bench.direction;
+  const auto closed = close_hand(bench.closing, start);
+  ASSERT_TRUE(closed.has_value());
+  const Eigen::Vector3d moved = closed->X_OH.translation() - start.X_OH.translation();
+  EXPECT_LT(moved.dot(bench.surface.approach), -0.008);
+  const HandPose buried = before_a_ball(bench, 0.0);
+  EXPECT_FALSE(close_hand(bench.closing, buried).has_value());  // deeper than it may draw back
+}
+
+TEST(CloseHand, FingersStopShortOfObstacles) {
+  // A plate across the fingers' way, 3 cm in front of the palm, hides a ball behind it.
+  robot::Scene scene = test::scene_of(robot::Sphere{0.04});
+  const Workbench free(scene);
+  const HandPose start = before_a_ball(free, 0.12);
+  Eigen::Isometry3d X_WB = Eigen::Isometry3d::Identity();
+  X_WB.translation() = -0.075 * free.surface.approach;
+  scene.bodies.push_back(
+      {"plate", X_WB, {{robot::Box{Eigen::Vector3d(0.01, 0.4, 0.4)}, Eigen::Isometry3d::Identity()}}});
+  const Workbench blocked(scene);
+  const auto closed = close_hand(blocked.closing, start);
+  ASSERT_TRUE(closed.has_value());
+  EXPECT_TRUE(find_contacts(blocked.closing, *closed, 0.001, 0.5).empty());
+  EXPECT_GT(obstacle_distance(blocked.closing, *closed, 0.01), 0.0);
+}
+
+TEST(GraspCheck, NamesTheFault) {
+  const Workbench bench(test::with_table(test::scene_of(robot::Sphere{0.04}), -0.3));
+  const HandCheckers checkers = hand_checkers(test::allegro(), bench.scene, "object");
+  const HandPose clear = before_a_ball(bench, 0.2);
+  GraspLimits limits{std::vector<bool>(test::allegro().links().size(), true), 0.001, 0.01};
+  EXPECT_EQ(posture_fault(bench.closing, checkers, clear, limits), "");
+  EXPECT_EQ(posture_fault(bench.closing, checkers, before_a_ball(bench, 0.03), limits), "penetrates the object");
+  HandPose low = clear;
+  low.X_OH.translation().z() = -0.29;
+  EXPECT_EQ(posture_fault(bench.closing, checkers, low, limits), "too near to an obstacle");
+  HandPose fist = clear;
+  fist.q = test::allegro().upper();
+  EXPECT_EQ(posture_fault(bench.closing, checkers, fist, limits), "hand in collision");
+  // A link may touch only when it has a contact.
+  const HandPose touch = before_a_ball(bench, 0.0402);
+  EXPECT_EQ(posture_fault(bench.closing, checkers, touch, limits), "");
+  limits.touching.assign(limits.touching.size(), false);
+  EXPECT_EQ(posture_fault(bench.closing, checkers, touch, limits), "penetrates the object");
+}
+
+TEST(GraspCheck, ObjectEdgesBetweenHandSamplesAreSeen) {
+  // A thin blade pressed 3 mm into the palm: few of the hand's own points are inside it.
+  const Workbench bench(test::scene_of(robot::Box{Eigen::Vector3d(0.08, 0.0008, 0.0008)}));
+  HandPose pose = before_a_ball(bench, 0.04 - 0.003);
+  pose.X_OH.translation().y() += 0.0011;
+  const auto distances = object_link_distances(bench.closing, pose, 0.01);
+  EXPECT_NEAR(*std::min_element(distances.begin(), distances.end()), -0.003, 0.0003);
+}
+
+}  // namespace
+}  // namespace opponens::grasp
