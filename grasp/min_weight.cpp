@@ -20,6 +20,7 @@ constexpr int kRefactor = 24;           // pivots between two fresh inverses of 
 constexpr double kReducedCost = 1e-11;  // a column enters when it gains more than this
 constexpr double kPivot = 1e-11;        // least pivot element, relative to the entering column
 constexpr double kZero = 1e-13;         // basic values below this are degenerate, relative to the scale
+constexpr double kBoundary = 1e-13;     // N l* below this is rounding
 constexpr int kPatience = 6;            // degenerate pivots in a row before Bland's rule
 
 /// min cost'b subject to A b = c, b >= 0 with A [6 x N]. Basic entries < 0 name artificial columns: -1 - row.
@@ -161,7 +162,7 @@ MinWeight min_weight(const Matrix6Xd& wrenches) {
     solution.weights[simplex.basis()[row]] = b;
     sum += b;
   }
-  solution.value = (1.0 - sum) / count;
+  solution.value = std::abs(1.0 - sum) < kBoundary ? 0.0 : (1.0 - sum) / count;
   solution.weights.array() += solution.value;
   solution.dual = simplex.dual() * (unit / count);
   return solution;

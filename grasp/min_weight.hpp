@@ -16,14 +16,17 @@ struct MinWeight {
     not_converged,  ///< the pivot limit was met (rounding); value is a lower bound
   };
   State state = State::no_balance;
-  double value = 0.0;                ///< l*
+  /// l*; exactly 0 when N |l*| < 1e-13: two contacts that pinch, and others that add nothing, put the origin on the
+  /// boundary of the hull, so this is no rare case.
+  double value = 0.0;
   Eigen::VectorXd weights;           ///< [N] a
   Vector6d dual = Vector6d::Zero();  ///< y: multiplier of W a = 0
 };
 
 /// With c the mean wrench and b = a - l: 1 - N l* = min 1'b subject to sum_j b_j (c - w_j) = c, b >= 0: a linear
 /// programme of six rows, solved by the revised simplex method (largest coefficient, Bland's rule while degenerate).
-/// Cost: O(6 N) per pivot, about 15 pivots. Where the optimum is not unique, any dual is a valid subgradient.
+/// Cost: O(6 N) per pivot, about 15 pivots. Where the optimum is not
+/// unique (four cone edges in one plane have several balances) the gradient below is that of one of them.
 MinWeight min_weight(const Matrix6Xd& wrenches);
 
 /// d l* / d W [6 x N] = -y a'.

@@ -25,7 +25,10 @@ Ticks ticks_of(const Axis& axis, Range range, int target) {
   if (ticks.at.size() > 1) ticks.step = ticks.at[1] - ticks.at[0];
   if (axis.integer && ticks.step < 1.0) {
     ticks = {};
-    for (double i = std::ceil(range.low - 1e-9); i <= range.high + 1e-9; i += 1.0) ticks.at.push_back(i);
+    const auto last = static_cast<long long>(std::floor(range.high + 1e-9));
+    for (auto i = static_cast<long long>(std::ceil(range.low - 1e-9)); i <= last; ++i) {
+      ticks.at.push_back(static_cast<double>(i));
+    }
   }
   return ticks;
 }

@@ -44,22 +44,24 @@ std::string banner() {
 }
 
 std::string head(const ReportInput& input) {
-  return concat(
-      {"<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>",
-       escape(input.title), "</title>\n<style>\n", style_sheet(), "</style>\n</head>\n<body>\n<main>\n"});
+  return concat({"<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n",
+                 "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>",
+                 escape(input.title), "</title>\n<style>\n", style_sheet(), "</style>\n</head>\n<body>\n<main>\n"});
 }
 
 std::string introduction(const ReportInput& input) {
   std::string out = concat({"<header>\n<h1>", escape(input.title), "</h1>\n"});
   if (any_simulated(input)) out += banner();
-  out += concat(
-      {"<p class=\"lead\">How a robot arm with a hand came to a grasping motion: recorded human grasps give hand "
-       "synergies, grasps of an object are searched along these synergies, and a collision-free path to one of "
-       "the grasps is planned near them. The method is that of &quot;Planning grasping motions for humanoid "
-       "robots&quot; (section and table numbers are that paper&#39;s); the computations are opponens",
-       input.program_version.empty() ? "" : " ", escape(input.program_version),
-       ". Units are SI, angles in rad.</p>\n</header>\n"});
+  const std::string program = input.program_version.empty() ? "" : concat({" ", escape(input.program_version)});
+  out +=
+      "<p class=\"lead\">How a robot arm with a hand came to a grasping motion: recorded human grasps give hand "
+      "synergies, "
+      "grasps of an object are searched along these synergies, and a collision-free path to one of the grasps is "
+      "planned "
+      "near them. The method is that of &quot;Planning grasping motions for humanoid robots&quot; (section and table "
+      "numbers are that paper&#39;s); the computations are opponens";
+  out += program;
+  out += ". Units are SI, angles in rad.</p>\n</header>\n";
   out += "<nav aria-label=\"Contents\"><ol>\n";
   for (const auto& section : kSections) {
     out += concat({"<li><a href=\"#", section.anchor, "\">", section.title, "</a></li>\n"});

@@ -98,6 +98,7 @@ std::string draw_scene(const robot::RobotModel& robot, const robot::Scene& scene
   svg.rect(0.0, 0.0, view.width, view.height, "class=\"sky\"");
   draw_facets(svg, view, std::move(all), body_paints());
   std::vector<Eigen::Vector2d> line;
+  line.reserve(trail.size());
   for (const auto& p : trail) line.push_back(view.project(p));
   if (line.size() >= 2) {
     svg.polyline(line, "class=\"trail-halo\"");

@@ -113,6 +113,7 @@ double quantile(std::vector<double> values, double share) {
 void difference_row(Table& table, const std::string& name, const std::vector<double>& values) {
   if (values.empty()) return;
   std::vector<double> sizes;
+  sizes.reserve(values.size());
   for (const double value : values) sizes.push_back(std::abs(value));
   table.row({text(name), text(std::to_string(values.size())), text(fixed(mean(values), 3)),
              text(fixed(quantile(values, 0.5), 3)), text(fixed(quantile(sizes, 0.5), 3)),

@@ -194,6 +194,7 @@ Markup snapshot_rows(const ReportInput& input) {
   }
   const auto shots = snapshots(part);
   std::vector<Eigen::VectorXd> shown;
+  shown.reserve(shots.size());
   for (const auto& shot : shots) shown.push_back(all[static_cast<std::size_t>(shot.row)]);
   const auto trail = palm_trail(robot, scene, all);
   const DrawnScene drawn = drawn_scene(robot, scene, object, 5000);

@@ -100,7 +100,11 @@ std::vector<double> nice_ticks(double low, double high, int target) {
   std::vector<double> ticks;
   const double slack = 1e-9;  // of a step: keeps the ends when they are round themselves
   const double first = std::ceil(low / step - slack);
-  for (double i = first; i <= high / step + slack; i += 1.0) ticks.push_back(i == 0.0 ? 0.0 : i * step);
+  const auto count = static_cast<int>(std::floor(high / step + slack) - first) + 1;
+  for (int i = 0; i < count; ++i) {
+    const double multiple = first + i;
+    ticks.push_back(multiple == 0.0 ? 0.0 : multiple * step);
+  }
   return ticks;
 }
 

@@ -19,22 +19,31 @@ std::string to_text(double value, std::chars_format format, int precision) {
 
 bool is_zero(const std::string& number) { return number.find_first_not_of("-0.") == std::string::npos; }
 
-/// Length of the well-formed UTF-8 sequence at the start of text, 0 when there is none (Unicode 15, table 3-7).
+/// A row of Unicode 15's table 3-7: first bytes, range of the second byte, length. Later bytes are 80 to BF.
+struct Sequence {
+  unsigned first_low, first_high, second_low, second_high;
+  std::size_t length;
+};
+constexpr std::array<Sequence, 8> kSequences{{{0xC2, 0xDF, 0x80, 0xBF, 2},
+                                              {0xE0, 0xE0, 0xA0, 0xBF, 3},
+                                              {0xE1, 0xEC, 0x80, 0xBF, 3},
+                                              {0xED, 0xED, 0x80, 0x9F, 3},
+                                              {0xEE, 0xEF, 0x80, 0xBF, 3},
+                                              {0xF0, 0xF0, 0x90, 0xBF, 4},
+                                              {0xF1, 0xF3, 0x80, 0xBF, 4},
+                                              {0xF4, 0xF4, 0x80, 0x8F, 4}}};
+
+bool between(unsigned value, unsigned low, unsigned high) { return value >= low && value <= high; }
+
+/// Length of the well-formed UTF-8 sequence at the start of text, 0 when there is none.
 std::size_t sequence_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
-  const auto between = [&](std::size_t i, unsigned low, unsigned high) { return byte(i) >= low && byte(i) <= high; };
-  const unsigned first = byte(0);
-  if (first < 0x80) return 1;
-  if (first >= 0xC2 && first <= 0xDF) return between(1, 0x80, 0xBF) ? 2 : 0;
-  if (first >= 0xE0 && first <= 0xEF) {
-    const unsigned low = first == 0xE0 ? 0xA0 : 0x80;
-    const unsigned high = first == 0xED ? 0x9F : 0xBF;
-    return between(1, low, high) && between(2, 0x80, 0xBF) ? 3 : 0;
-  }
-  if (first >= 0xF0 && first <= 0xF4) {
-    const unsigned low = first == 0xF0 ? 0x90 : 0x80;
-    const unsigned high = first == 0xF4 ? 0x8F : 0xBF;
-    return between(1, low, high) && between(2, 0x80, 0xBF) && between(3, 0x80, 0xBF) ? 4 : 0;
+  if (byte(0) < 0x80) return 1;
+  for (const auto& row : kSequences) {
+    if (!between(byte(0), row.first_low, row.first_high)) continue;
+    bool well_formed = between(byte(1), row.second_low, row.second_high);
+    for (std::size_t i = 2; i < row.length; ++i) well_formed = well_formed && between(byte(i), 0x80, 0xBF);
+    return well_formed ? row.length : 0;
   }
   return 0;
 }

@@ -25,6 +25,12 @@ std::string read_joint(const YamlValue& value, const HandFile& hand, std::set<st
   return joint;
 }
 
+void require_tip(const HandFile& hand, const std::string& name, const YamlValue& where) {
+  const bool known =
+      std::any_of(hand.tips.begin(), hand.tips.end(), [&](const NamedPoint& tip) { return tip.point.name == name; });
+  if (!known) where.fail("no tip '" + name + "' in this file");
+}
+
 /// Percentile in [0, 1] of sorted values, linear between order statistics.
 double percentile(const std::vector<double>& sorted, double share) {
   const double place = share * static_cast<double>(sorted.size() - 1);
@@ -68,10 +74,17 @@ HandMapping load_hand_mapping(const std::filesystem::path& hand_yaml) {
   }
   if (const auto tips = value.find("fingertips")) {
     for (const auto& [robot_tip, human_tip] : tips->entries()) {
-      const bool known = std::any_of(hand.tips.begin(), hand.tips.end(),
-                                     [&name = robot_tip](const NamedPoint& tip) { return tip.point.name == name; });
-      if (!known) human_tip.fail("no tip '" + robot_tip + "' in this file");
-      mapping.fingertips[robot_tip] = human_tip.text();
+      require_tip(hand, robot_tip, human_tip);
+      if (!human_tip.is_map()) {
+        mapping.fingertips[robot_tip] = human_tip.text();
+        continue;
+      }
+      human_tip.allow_keys({"tip", "from"});
+      mapping.fingertips[robot_tip] = human_tip.at("tip").text();
+      mapping.measured_from[robot_tip] = human_tip.at("from").text();
+    }
+    for (const auto& [tip, from] : mapping.measured_from) {
+      if (!mapping.fingertips.contains(from)) tips->fail("'" + tip + "' is measured from '" + from + "': not mapped");
     }
   }
   if (const auto rpy = value.find("palm_rpy")) {

@@ -26,9 +26,12 @@ struct JointMapping {
 /// How a human hand drives a robot hand (hand.yaml, key "mapping"). --mapping paper: flexion joints copy, abduction and
 /// thumb opposition come from fingertip positions (paper, section 3.2).
 struct HandMapping {
-  std::vector<JointMapping> copied;                             ///< joint-to-joint part
-  std::vector<std::string> fitted;                              ///< robot joints found from fingertip positions
-  std::map<std::string, std::string> fingertips;                ///< robot tip name -> human tip name
+  std::vector<JointMapping> copied;               ///< joint-to-joint part
+  std::vector<std::string> fitted;                ///< robot joints found from fingertip positions
+  std::map<std::string, std::string> fingertips;  ///< robot tip name -> human tip name
+  /// Robot tip name -> robot tip of the finger from whose base it is measured; absent: its own. The thumb's measured
+  /// from the index finger's keeps what both hands pinch.
+  std::map<std::string, std::string> measured_from;
   Eigen::Matrix3d R_robot_human = Eigen::Matrix3d::Identity();  ///< human palm axes in the robot's palm frame
 };
 
@@ -67,12 +70,13 @@ struct Retargeted {
 /// the joint limits, smooth over time: sum over samples and tips of |p - p*|^2 in cm^2, plus (smoothness dq)^2 over
 /// neighbouring samples, plus (rest (q - middle))^2. The target of a robot tip, in its palm frame, is
 ///   p* = b_r + (l_r / l_h) R (p_h - b_h),
-/// where p_h is the human tip in the human palm frame, b the finger's base (the last joint origin on the way to the tip
-/// that no joint below it moves: the knuckle; for the thumb the first joint), l the length of the finger stretched out
-/// (joint to joint from the base to the tip), and R = R_robot_human. Hand joints that are neither copied nor fitted
-/// stay at the position nearest to zero. One thread, deterministic. human: the parametric human hand scaled to the
-/// wearer. Failure: a channel, joint or tip is missing (not_found), a value is not finite (invalid_input), a fitted
-/// joint moves no mapped tip (degenerate), the solver did not meet its tolerance (not_converged).
+/// where p_h is the human tip in the human palm frame, b the base of the finger it is measured from (the last joint
+/// origin on the way to the tip that no joint of the finger moves: the knuckle; for a thumb its first joint), l that
+/// finger's length (joint to joint from the base to the tip), and R = R_robot_human. Hand joints that are neither
+/// copied nor fitted stay at the position nearest to zero. One thread, deterministic. human: the parametric human hand
+/// scaled to the wearer. Failure: a channel, joint or tip is missing (not_found), a value is not finite
+/// (invalid_input), a fitted joint moves no mapped tip (degenerate), the solver did not meet its tolerance
+/// (not_converged).
 Result<Retargeted> retarget(const Demonstration& recording, const ChannelCalibration& calibration,
                             const RobotModel& human, const RobotModel& hand, const HandMapping& mapping,
                             const RetargetSettings& settings);

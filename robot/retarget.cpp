@@ -89,20 +89,42 @@ void find_fitted_joints(const RobotModel& hand, const std::vector<int>& fitted, 
   }
 }
 
-/// p* = b_r + (l_r / l_h) R (p_h - b_h) for every mapped tip.
-Result<std::vector<TipTarget>> tip_targets(const RobotModel& human, const Eigen::MatrixXd& q_human,
-                                           const RobotModel& hand, const HandMapping& mapping,
-                                           const std::vector<int>& fitted) {
-  std::vector<TipTarget> targets;
+struct FingerPair {
+  Finger robot;
+  Finger human;
+};
+
+Result<std::map<std::string, FingerPair>> mapped_fingers(const RobotModel& human, const RobotModel& hand,
+                                                         const HandMapping& mapping) {
+  std::map<std::string, FingerPair> fingers;
   for (const auto& [robot_name, human_name] : mapping.fingertips) {
     const SurfacePoint* robot_tip = find_tip(hand, robot_name);
     const SurfacePoint* human_tip = find_tip(human, human_name);
     if (!robot_tip) return failure(FailureCode::not_found, "the robot hand has no tip '" + robot_name + "'");
     if (!human_tip) return failure(FailureCode::not_found, "the human hand has no tip '" + human_name + "'");
-    const Finger theirs = finger_of(human, *human_tip);
-    TipTarget target{finger_of(hand, *robot_tip), {}, {}, {}};
-    const Eigen::Matrix3d turned = (target.finger.length / theirs.length) * mapping.R_robot_human;
-    target.path = (turned * (tip_path(human, theirs, q_human).colwise() - theirs.base)).colwise() + target.finger.base;
+    fingers[robot_name] = {finger_of(hand, *robot_tip), finger_of(human, *human_tip)};
+  }
+  return fingers;
+}
+
+/// p* = b_r + (l_r / l_h) R (p_h - b_h) for every mapped tip.
+Result<std::vector<TipTarget>> tip_targets(const RobotModel& human, const Eigen::MatrixXd& q_human,
+                                           const RobotModel& hand, const HandMapping& mapping,
+                                           const std::vector<int>& fitted) {
+  const auto fingers = mapped_fingers(human, hand, mapping);
+  if (!fingers) return tl::make_unexpected(fingers.error());
+  std::vector<TipTarget> targets;
+  for (const auto& [name, pair] : *fingers) {
+    const auto other = mapping.measured_from.find(name);
+    const auto from = fingers->find(other == mapping.measured_from.end() ? name : other->second);
+    if (from == fingers->end()) {
+      return failure(FailureCode::not_found, "tip '" + name + "' is measured from '" + other->second + "': not mapped");
+    }
+    const Finger& ours = from->second.robot;
+    const Finger& theirs = from->second.human;
+    const Eigen::Matrix3d turned = (ours.length / theirs.length) * mapping.R_robot_human;
+    TipTarget target{pair.robot, {}, {}, {}};
+    target.path = (turned * (tip_path(human, pair.human, q_human).colwise() - theirs.base)).colwise() + ours.base;
     find_fitted_joints(hand, fitted, target);
     targets.push_back(std::move(target));
   }

@@ -87,7 +87,8 @@ Record encode(const Demonstration& demonstration, const Provenance& provenance) 
 }
 
 Demonstration decode_demonstration(const Record& record) {
-  const FieldReader read(record, "demonstration");
+  // A motion mapped to a robot hand has the same fields under a kind of its own.
+  const FieldReader read(record, record.kind == "hand_demonstration" ? record.kind : "demonstration");
   Demonstration demonstration;
   demonstration.id = record.name;
   for (const auto& [name, field] : record.fields) {

@@ -17,6 +17,7 @@ Record encode(const SynergySet& set, const Provenance& provenance);
 Record encode(const Grasp& grasp, const Provenance& provenance);
 Record encode(const PlanResult& result, const Provenance& provenance);
 
+/// Kind "demonstration", or "hand_demonstration" for one that was mapped to a robot hand.
 Demonstration decode_demonstration(const Record& record);
 SynergySet decode_synergy_set(const Record& record);
 Grasp decode_grasp(const Record& record);

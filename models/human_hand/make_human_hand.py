@@ -22,8 +22,8 @@ SEGMENTS = {"I": (0.245, 0.143, 0.097), "M": (0.266, 0.170, 0.108), "R": (0.244,
             "L": (0.204, 0.117, 0.093)}
 THUMB = (0.251, 0.196, 0.158)  # metacarpal, proximal, distal
 RAY = {"I": 14.0, "M": 0.0, "R": -14.0, "L": -27.0}  # deg, metacarpals fan out from the wrist, + towards the thumb
-RADIUS = {"I": (0.050, 0.046, 0.042), "M": (0.050, 0.046, 0.042), "R": (0.047, 0.043, 0.039),
-          "L": (0.042, 0.038, 0.035)}
+RADIUS = {"I": (0.050, 0.046, 0.042), "M": (0.050, 0.046, 0.042), "R": (0.045, 0.042, 0.039),
+          "L": (0.040, 0.037, 0.034)}
 THUMB_RADIUS = (0.060, 0.055, 0.050)
 THUMB_BASE = (0.07, 0.14, 0.10 - METACARPAL["M"])  # palmar, radial, distal (from the wrist)
 CMC_SHARE = 0.25  # PALM_ARCH bends the little finger's metacarpal at this share of its length
@@ -112,7 +112,7 @@ def finger(letter):
     if letter == "L":
         parent, at = "little_metacarpal", [2 * v for v in half]
         joint("PALM_ARCH", "palm", parent, cmc, (0, 1, 0))
-        link(parent, (cylinder(0.06 * HL, bone, half[2], (-ray, 0, 0), 0.0, half[1]),))
+        link(parent, (cylinder(0.042 * HL, bone, half[2], (-ray, 0, 0), 0.0, half[1]),))
     # Abduction is positive away from the middle finger; the middle finger's own is positive towards the thumb.
     away = 1.0 if letter in "RL" else -1.0
     joint(letter + "_ABD", parent, name + "_base", at, (away, 0, 0))
@@ -143,8 +143,8 @@ def write_urdf(path):
                  "     SPDX-License-Identifier: BSD-3-Clause",
                  "     Written by make_human_hand.py, which names the sources. -->", '<robot name="human_hand">'])
     # One box over the index and middle metacarpals, one over the ring finger's.
-    link("palm", (box((0.14 * HL, 0.24 * HL, 0.44 * HL), (0, 0.06 * HL, -0.22 * HL)),
-                  box((0.12 * HL, 0.11 * HL, 0.40 * HL), (0, -0.105 * HL, -0.24 * HL))))
+    link("palm", (box((0.14 * HL, 0.21 * HL, 0.44 * HL), (0, 0.045 * HL, -0.22 * HL)),
+                  box((0.12 * HL, 0.09 * HL, 0.38 * HL), (0, -0.105 * HL, -0.25 * HL))))
     thumb()
     for letter in "IMRL":
         finger(letter)

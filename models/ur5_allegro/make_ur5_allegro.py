@@ -165,7 +165,7 @@ def mapping():
     copied += [("joint_14.0", "T_MCP"), ("joint_15.0", "T_IP")]
     lines = ["mapping:", "  copied:"] + [f"    - {{joint: {j}, channel: {c}}}" for j, c in copied]
     return lines + ["  fitted: [joint_0.0, joint_4.0, joint_8.0, joint_12.0, joint_13.0]",
-                    "  fingertips: {index: index, middle: middle, ring: ring, thumb: thumb}"]
+                    "  fingertips: {index: index, middle: middle, ring: ring, thumb: {tip: thumb, from: index}}"]
 
 
 def hand_yaml():

@@ -30,11 +30,12 @@ struct Workbench {
   ClosingScene closing;
 };
 
-/// A ball in front of the palm, fingers open.
-HandPose before_a_ball(const Workbench& bench, double distance) {
+/// The object's origin in front of the root of the fingers, these half closed.
+HandPose before_the_object(const Workbench& bench, double distance) {
   HandPose pose;
-  pose.q = test::allegro().clip(bench.synergies.pre_grasp.center);
-  pose.X_OH.translation() = -(bench.surface.palm_center + distance * bench.surface.approach);
+  pose.q = test::allegro().clip(bench.synergies.group.box.center - 0.2 * bench.direction);
+  pose.X_OH.translation() =
+      -(bench.surface.palm_center + Eigen::Vector3d(0.0, 0.0, 0.04) + distance * bench.surface.approach);
   return pose;
 }
 
@@ -48,7 +49,7 @@ TEST(ClosingDirection, PointsFromPreGraspToGraspWithUnitLargestJoint) {
 
 TEST(CloseHand, FingersAndPalmTouchABallWithoutEnteringIt) {
   const Workbench bench(test::scene_of(robot::Sphere{0.04}));
-  const auto closed = close_hand(bench.closing, before_a_ball(bench, 0.045));
+  const auto closed = close_hand(bench.closing, before_the_object(bench, 0.045));
   ASSERT_TRUE(closed.has_value());
   EXPECT_TRUE(test::allegro().within_limits(closed->q));
   const std::vector<Contact> contacts = find_contacts(bench.closing, *closed, 0.001, 0.5);
@@ -63,39 +64,40 @@ TEST(CloseHand, FingersAndPalmTouchABallWithoutEnteringIt) {
 
 TEST(CloseHand, DrawsBackAndOpensWhenItStartsInsideTheObject) {
   const Workbench bench(test::scene_of(robot::Sphere{0.04}));
-  HandPose start = before_a_ball(bench, 0.03);  // 1 cm too near
+  HandPose start = before_the_object(bench, 0.03);  // 1 cm too near
   start.q += 0.3 * bench.direction;
   const auto closed = close_hand(bench.closing, start);
   ASSERT_TRUE(closed.has_value());
   const Eigen::Vector3d moved = closed->X_OH.translation() - start.X_OH.translation();
   EXPECT_LT(moved.dot(bench.surface.approach), -0.008);
-  const HandPose buried = before_a_ball(bench, 0.0);
+  const HandPose buried = before_the_object(bench, 0.0);
   EXPECT_FALSE(close_hand(bench.closing, buried).has_value());  // deeper than it may draw back
 }
 
 TEST(CloseHand, FingersStopShortOfObstacles) {
-  // A plate across the fingers' way, 3 cm in front of the palm, hides a ball behind it.
+  // A plate between the fingers and the ball.
   robot::Scene scene = test::scene_of(robot::Sphere{0.04});
   const Workbench free(scene);
-  const HandPose start = before_a_ball(free, 0.12);
+  const HandPose start = before_the_object(free, 0.045);
   Eigen::Isometry3d X_WB = Eigen::Isometry3d::Identity();
-  X_WB.translation() = -0.075 * free.surface.approach;
+  X_WB.translation() = Eigen::Vector3d(0.045, 0.0, 0.0);
   scene.bodies.push_back(
-      {"plate", X_WB, {{robot::Box{Eigen::Vector3d(0.01, 0.4, 0.4)}, Eigen::Isometry3d::Identity()}}});
+      {"plate", X_WB, {{robot::Box{Eigen::Vector3d(0.004, 0.2, 0.08)}, Eigen::Isometry3d::Identity()}}});
   const Workbench blocked(scene);
-  const auto closed = close_hand(blocked.closing, start);
-  ASSERT_TRUE(closed.has_value());
-  EXPECT_TRUE(find_contacts(blocked.closing, *closed, 0.001, 0.5).empty());
-  EXPECT_GT(obstacle_distance(blocked.closing, *closed, 0.01), 0.0);
+  const auto touching = close_hand(free.closing, start);
+  const auto stopped = close_hand(blocked.closing, start);
+  ASSERT_TRUE(touching.has_value() && stopped.has_value());
+  EXPECT_LT(obstacle_distance(blocked.closing, *touching, 0.01), 0.0);  // without the plate they go through its place
+  EXPECT_GT(obstacle_distance(blocked.closing, *stopped, 0.01), 0.0);
 }
 
 TEST(GraspCheck, NamesTheFault) {
   const Workbench bench(test::with_table(test::scene_of(robot::Sphere{0.04}), -0.3));
   const HandCheckers checkers = hand_checkers(test::allegro(), bench.scene, "object");
-  const HandPose clear = before_a_ball(bench, 0.2);
+  const HandPose clear = before_the_object(bench, 0.2);
   GraspLimits limits{std::vector<bool>(test::allegro().links().size(), true), 0.001, 0.01};
   EXPECT_EQ(posture_fault(bench.closing, checkers, clear, limits), "");
-  EXPECT_EQ(posture_fault(bench.closing, checkers, before_a_ball(bench, 0.03), limits), "penetrates the object");
+  EXPECT_EQ(posture_fault(bench.closing, checkers, before_the_object(bench, 0.03), limits), "penetrates the object");
   HandPose low = clear;
   low.X_OH.translation().z() = -0.29;
   EXPECT_EQ(posture_fault(bench.closing, checkers, low, limits), "too near to an obstacle");
@@ -103,16 +105,18 @@ TEST(GraspCheck, NamesTheFault) {
   fist.q = test::allegro().upper();
   EXPECT_EQ(posture_fault(bench.closing, checkers, fist, limits), "hand in collision");
   // A link may touch only when it has a contact.
-  const HandPose touch = before_a_ball(bench, 0.0402);
-  EXPECT_EQ(posture_fault(bench.closing, checkers, touch, limits), "");
+  const auto touch = close_hand(bench.closing, before_the_object(bench, 0.045));
+  ASSERT_TRUE(touch.has_value());
+  EXPECT_EQ(posture_fault(bench.closing, checkers, *touch, limits), "");
   limits.touching.assign(limits.touching.size(), false);
-  EXPECT_EQ(posture_fault(bench.closing, checkers, touch, limits), "penetrates the object");
+  EXPECT_EQ(posture_fault(bench.closing, checkers, *touch, limits), "penetrates the object");
 }
 
 TEST(GraspCheck, ObjectEdgesBetweenHandSamplesAreSeen) {
   // A thin blade pressed 3 mm into the palm: few of the hand's own points are inside it.
   const Workbench bench(test::scene_of(robot::Box{Eigen::Vector3d(0.08, 0.0008, 0.0008)}));
-  HandPose pose = before_a_ball(bench, 0.04 - 0.003);
+  HandPose pose = before_the_object(bench, 0.0);
+  pose.X_OH.translation() = -(bench.surface.palm_center + (0.04 - 0.003) * bench.surface.approach);
   pose.X_OH.translation().y() += 0.0011;
   const auto distances = object_link_distances(bench.closing, pose, 0.01);
   EXPECT_NEAR(*std::min_element(distances.begin(), distances.end()), -0.003, 0.0003);

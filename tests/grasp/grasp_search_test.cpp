@@ -8,6 +8,7 @@
 
 #include "allegro.hpp"
 #include "recheck.hpp"
+#include "robot/collision.hpp"
 
 namespace opponens::grasp {
 namespace {

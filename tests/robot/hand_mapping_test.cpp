@@ -138,7 +138,17 @@ TEST(Retarget, CopiesExactlyStaysInsideTheLimitsAndKeepsTheRest) {
                                        .cwiseMin(hands.hand.upper()[joint]);
     EXPECT_EQ(mapped.q_h.col(joint), wanted) << copy.joint;
   }
-  EXPECT_EQ(result->clamped_samples, 0) << "the human ranges lie inside the Allegro's";
+  // The human PIP joints bend to 100 deg, the Allegro's to 1.709 rad; the thumb's IP back to -15 deg and -0.162 rad.
+  int beyond = 0;
+  for (Eigen::Index t = 0; t < recording.q_h.rows(); ++t) {
+    bool outside = recording.q_h(t, column(recording, "T_IP")) < -0.162;
+    for (const char* pip : {"I_PIP", "M_PIP", "R_PIP"}) {
+      outside = outside || recording.q_h(t, column(recording, pip)) > 1.709;
+    }
+    beyond += outside ? 1 : 0;
+  }
+  EXPECT_GT(beyond, 0);
+  EXPECT_EQ(result->clamped_samples, beyond);
 }
 
 TEST(Retarget, CalibrationGainAndClampingAreApplied) {
@@ -168,14 +178,20 @@ TEST(Retarget, RecoversTheRobotsOwnMovement) {
 
 TEST(Retarget, FittingReducesTheTipResidual) {
   const Hands hands;
-  const Demonstration recording = swing(hands.human, 0.2, 0.8);
   HandMapping unfitted = hands.mapping;
   unfitted.fitted.clear();
-  const auto fitted = retarget(recording, {}, hands.human, hands.hand, hands.mapping, {});
-  const auto rest = retarget(recording, {}, hands.human, hands.hand, unfitted, {});
+  const Demonstration human = swing(hands.human, 0.2, 0.8);
+  const auto fitted = retarget(human, {}, hands.human, hands.hand, hands.mapping, {});
+  const auto rest = retarget(human, {}, hands.human, hands.hand, unfitted, {});
   ASSERT_TRUE(fitted && rest);
-  EXPECT_LT(fitted->tip_residual_rms, 0.9 * rest->tip_residual_rms);
-  EXPECT_GT(fitted->tip_residual_rms, 1e-4) << "the hands differ: a perfect fit would mean that nothing is compared";
+  EXPECT_LT(fitted->tip_residual_rms, rest->tip_residual_rms);
+  EXPECT_GT(fitted->tip_residual_rms, 1e-3) << "the hands differ: a perfect fit would mean that nothing is compared";
+  // Where a perfect fit exists, it is found.
+  const Demonstration robot = swing(hands.hand, 0.3, 0.7);
+  const auto own = retarget(robot, {}, hands.hand, hands.hand, self_mapping(hands.mapping), {});
+  const auto own_rest = retarget(robot, {}, hands.hand, hands.hand, self_mapping(unfitted), {});
+  ASSERT_TRUE(own && own_rest);
+  EXPECT_LT(own->tip_residual_rms, 0.01 * own_rest->tip_residual_rms);
 }
 
 /// At the optimum inside the limits the gradient of the documented cost vanishes; this writes that cost a second time.
