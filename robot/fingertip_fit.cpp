@@ -2,9 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/fingertip_fit.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include <ceres/ceres.h>
@@ -15,7 +13,6 @@ namespace {
 
 constexpr double kCentimetres = 100.0;  ///< residuals are in cm, so that weights in rad compare with them
 constexpr int kRounds = 20;             ///< of the active set; two or three are usual
-constexpr int kSweeps = 30;             ///< of the start values' coordinate descent
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -138,60 +135,6 @@ class DifferenceCost : public ceres::CostFunction {
   double weight_;
   Eigen::VectorXd rest_;
 };
-
-/// Where the circle on which joint turns its tips is nearest to their targets: the position in [low, high] with the
-/// largest A cos(x) + B sin(x), x the turn from here, A and B summed over the tips. Unchanged where the tips or targets
-/// lie on the axis.
-double best_turn(const RobotModel& hand, const std::vector<TipTarget>& targets, int joint, Eigen::Index sample,
-                 const Eigen::VectorXd& q, const std::vector<Eigen::Isometry3d>& X_RL) {
-  const Eigen::Isometry3d X_PR = X_RL[static_cast<std::size_t>(hand.palm())].inverse();
-  double A = 0.0;
-  double B = 0.0;
-  for (const TipTarget& target : targets) {
-    if (std::find(target.joints.begin(), target.joints.end(), joint) == target.joints.end()) continue;
-    const FittedJoint& turning = target.turning.at(joint);
-    if (!turning.revolute) return q[joint];
-    const Eigen::Isometry3d X_PC = X_PR * X_RL[static_cast<std::size_t>(turning.link)];
-    const Eigen::Vector3d axis = X_PC.linear() * turning.axis;
-    const Eigen::Vector3d tip =
-        X_PR * X_RL[static_cast<std::size_t>(target.finger.link)] * target.finger.p_L - X_PC.translation();
-    const Eigen::Vector3d goal = target.path.col(sample) - X_PC.translation();
-    A += tip.dot(goal) - axis.dot(tip) * axis.dot(goal);
-    B += axis.dot(tip.cross(goal));
-  }
-  if (std::hypot(A, B) < 1e-10) return q[joint];
-  const double low = hand.lower()[joint];
-  const double high = hand.upper()[joint];
-  const double middle = 0.5 * (low + high);
-  const double best = middle + std::remainder(q[joint] + std::atan2(B, A) - middle, 2.0 * std::numbers::pi);
-  if (best >= low && best <= high) return best;
-  const auto value = [&](double at) { return A * std::cos(at - q[joint]) + B * std::sin(at - q[joint]); };
-  return value(low) > value(high) ? low : high;
-}
-
-/// Start values: cyclic coordinate descent, one fitted joint at a time, sample after sample. Exact for a finger with
-/// one fitted joint but for the small weights of smoothness and rest.
-void seed_positions(const RobotModel& hand, const std::vector<TipTarget>& targets, const std::vector<int>& fitted,
-                    Eigen::MatrixXd& q) {
-  std::vector<Eigen::Isometry3d> X_RL;
-  for (Eigen::Index t = 0; t < q.cols(); ++t) {
-    if (t > 0) {
-      for (const int joint : fitted) q(joint, t) = q(joint, t - 1);
-    }
-    Eigen::VectorXd position = q.col(t);
-    for (int sweep = 0; sweep < kSweeps; ++sweep) {
-      double change = 0.0;
-      for (const int joint : fitted) {
-        hand.link_poses(position, X_RL);
-        const double best = best_turn(hand, targets, joint, t, position, X_RL);
-        change = std::max(change, std::abs(best - position[joint]));
-        position[joint] = best;
-      }
-      if (change < 1e-4) break;
-    }
-    q.col(t) = position;
-  }
-}
 
 /// The fitted joints of all samples as one Ceres problem with bounds. Ceres clips steps to the bounds but solves for
 /// them as if there were none, which creeps where many samples lie on a bound; so positions that the gradient pushes

@@ -27,8 +27,13 @@ struct TipTarget {
   Eigen::Matrix3Xd path;               ///< [3 x T] m, palm frame
 };
 
-/// Moves the fitted joints' rows of q [d x T] so that the tips follow their targets (the problem of retarget()). Starts
-/// from the values in q. Returns why not, when the solver did not meet its tolerance.
+/// Start values for fit_fingertips: cyclic coordinate descent, one fitted joint at a time, sample after sample. Exact
+/// for a finger with one fitted joint but for the small weights of smoothness and rest.
+void seed_positions(const RobotModel& hand, const std::vector<TipTarget>& targets, const std::vector<int>& fitted,
+                    Eigen::MatrixXd& q);
+
+/// Moves the fitted joints' rows of q [d x T] so that the tips follow their targets (the problem of retarget()).
+/// Returns why not, when the solver did not meet its tolerance.
 std::optional<Failure> fit_fingertips(const RobotModel& hand, const std::vector<TipTarget>& targets,
                                       const std::vector<int>& fitted, const RetargetSettings& settings,
                                       Eigen::MatrixXd& q);

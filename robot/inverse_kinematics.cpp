@@ -7,8 +7,6 @@
 #include <numbers>
 #include <string>
 
-#include <Eigen/SVD>
-
 #include "core/require.hpp"
 
 namespace opponens::robot {
@@ -20,7 +18,6 @@ using Eigen::Vector3d;
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr double kFamilyTolerance = 1e-6;  ///< m and rad: digits printed in URDFs give 1e-9
-constexpr double kPoseTolerance = 5e-11;   ///< m and rad: matrix entries of the pose then agree within 1e-10
 constexpr double kSameSolution = 1e-6;     ///< rad: roots that meet at a singularity
 constexpr double kSingularWrist = 1e-8;    ///< sine of joint 5's angle from it
 constexpr double kReachSlack = 1e-6;       ///< a cosine beyond 1 by this much is tried: refinement decides
@@ -54,11 +51,6 @@ Roots solve_cosine(double A, double B, double C) {
   const double half = std::atan2(std::sqrt((1.0 - cosine) * (1.0 + cosine)), cosine);
   const double middle = std::atan2(B, A);
   return {{middle - half, middle + half}, 2};
-}
-
-Vector3d rotation_vector(const Eigen::Matrix3d& R) {
-  const Eigen::AngleAxisd angle_axis(Eigen::Quaterniond(R).normalized());
-  return angle_axis.axis() * angle_axis.angle();
 }
 
 bool same(const Eigen::Matrix<double, 6, 1>& a, const Eigen::Matrix<double, 6, 1>& b) {
@@ -217,63 +209,6 @@ bool ArmKinematics::elbow_roots(Search& search, Vector6d q) const {
     if (!known) search.found.push_back(solution);
   }
   return any;
-}
-
-/// Newton step of the pose error at q; a least-squares step where the Jacobian is singular.
-ArmKinematics::Vector6d ArmKinematics::step(const Isometry3d& X_RH, const Vector6d& q, double& residual) const {
-  std::array<Vector3d, 6> axis;
-  std::array<Vector3d, 6> origin;
-  Isometry3d X = Isometry3d::Identity();
-  for (std::size_t i = 0; i < 6; ++i) {
-    X = X * joints_[i].X_PJ;
-    origin[i] = X.translation();
-    axis[i] = X.linear() * joints_[i].axis;
-    X.linear() = X.linear() * turn(joints_[i].axis, q[static_cast<Eigen::Index>(i)]);
-  }
-  X = X * X_6H_;
-  Vector6d error;
-  error << rotation_vector(X_RH.linear() * X.linear().transpose()), X_RH.translation() - X.translation();
-  residual = std::max(error.head<3>().norm(), error.tail<3>().norm());
-  if (residual < 0.01 * kPoseTolerance) return Vector6d::Zero();
-  Eigen::Matrix<double, 6, 6> jacobian;
-  for (std::size_t i = 0; i < 6; ++i) {
-    jacobian.col(static_cast<Eigen::Index>(i)) << axis[i], axis[i].cross(X.translation() - origin[i]);
-  }
-  Eigen::JacobiSVD<Eigen::Matrix<double, 6, 6>> svd(jacobian, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  svd.setThreshold(1e-7);
-  return svd.solve(error);
-}
-
-/// Newton iterations from q, kept short; returns the residual reached (max of m and rad).
-double ArmKinematics::refine(const Isometry3d& X_RH, Vector6d& q) const {
-  double best = 0.0;
-  Vector6d change = step(X_RH, q, best);
-  for (int iteration = 0; iteration < 12 && change.norm() > 0.0; ++iteration) {
-    const Vector6d next = q + change;
-    double residual = 0.0;
-    const Vector6d next_change = step(X_RH, next, residual);
-    if (!(residual < best) || (next - q).norm() > 0.01) break;  // no progress, or another branch
-    q = next;
-    best = residual;
-    change = next_change;
-  }
-  return best;
-}
-
-/// Refines, from beside a singularity where need be: the root there moves by the square root of the digits missing.
-bool ArmKinematics::settle(const Isometry3d& X_RH, Vector6d& q) const {
-  if (refine(X_RH, q) < kPoseTolerance) return true;
-  for (const int joint : {2, 0, 4}) {
-    for (const double shift : {3e-5, -3e-5}) {
-      Vector6d beside = q;
-      beside[joint] += shift;
-      if (refine(X_RH, beside) < kPoseTolerance) {
-        q = beside;
-        return true;
-      }
-    }
-  }
-  return false;
 }
 
 std::vector<Eigen::VectorXd> ArmKinematics::branches(const Isometry3d& X_RH) const {

@@ -33,6 +33,7 @@ class ArmKinematics {
   std::vector<Eigen::VectorXd> branches(const Eigen::Isometry3d& X_RH) const;
 
  private:
+  static constexpr double kPoseTolerance = 5e-11;  ///< m and rad: matrix entries then agree within 1e-10
   using Vector6d = Eigen::Matrix<double, 6, 1>;
   struct Joint6 {
     Eigen::Isometry3d X_PJ;  ///< from the joint before (or the root), fixed joints included

@@ -8,24 +8,17 @@
 #include <mutex>
 #include <numbers>
 #include <sstream>
-#include <tuple>
 
 #include <console_bridge/console.h>
 #include <tinyxml.h>
 #include <urdf_parser/urdf_parser.h>
 
 #include "core/require.hpp"
-#include "robot/mesh.hpp"
+#include "robot/urdf_geometry.hpp"
 
 namespace opponens::robot {
 
 namespace {
-
-using MeshCache = std::map<std::tuple<std::string, double, double, double>, std::shared_ptr<const TriangleMesh>>;
-
-[[noreturn]] void fail(const std::filesystem::path& file, const std::string& message) {
-  throw InputError(file.string() + ": " + message);
-}
 
 /// Keeps what urdfdom would print: its first complaint is the reason that the caller is told.
 class CapturedLog : public console_bridge::OutputHandler {
@@ -45,9 +38,9 @@ class CapturedLog : public console_bridge::OutputHandler {
 };
 
 std::string read_text(const std::filesystem::path& file) {
-  if (std::filesystem::is_directory(file)) fail(file, "is a directory, expected a URDF file");
+  if (std::filesystem::is_directory(file)) fail_urdf(file, "is a directory, expected a URDF file");
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) fail(file, "cannot be opened");
+  if (!stream) fail_urdf(file, "cannot be opened");
   std::stringstream content;
   content << stream.rdbuf();
   return content.str();
@@ -61,9 +54,10 @@ urdf::ModelInterfaceSharedPtr parse(const std::filesystem::path& file, const std
   try {
     model = urdf::parseURDF(text);
   } catch (const std::exception& error) {  // urdfdom lets some number conversions escape
-    fail(file, std::string("not a valid URDF: ") + error.what());
+    fail_urdf(file, std::string("not a valid URDF: ") + error.what());
   }
-  if (!model) fail(file, "not a valid URDF: " + (log.first_error().empty() ? "no reason given" : log.first_error()));
+  if (!model)
+    fail_urdf(file, "not a valid URDF: " + (log.first_error().empty() ? "no reason given" : log.first_error()));
   return model;
 }
 
@@ -93,10 +87,10 @@ Outline outline_of(const std::filesystem::path& file, const std::string& text) {
   TiXmlDocument document;
   document.Parse(text.c_str());
   if (document.Error()) {
-    fail(file, "line " + std::to_string(document.ErrorRow()) + ": not XML: " + document.ErrorDesc());
+    fail_urdf(file, "line " + std::to_string(document.ErrorRow()) + ": not XML: " + document.ErrorDesc());
   }
   const TiXmlElement* robot = document.FirstChildElement("robot");
-  if (!robot) fail(file, "has no <robot> element");
+  if (!robot) fail_urdf(file, "has no <robot> element");
   Outline outline;
   std::map<std::string, std::string> joint_of_child;
   for (const TiXmlElement* joint = robot->FirstChildElement("joint"); joint;
@@ -107,90 +101,13 @@ Outline outline_of(const std::filesystem::path& file, const std::string& text) {
     if (!name || !link) continue;  // urdfdom complains about both
     const auto [other, is_new] = joint_of_child.emplace(link, name);
     if (!is_new) {
-      fail(file, "line " + std::to_string(joint->Row()) + ": link '" + link + "' is the child of two joints, '" +
-                     other->second + "' and '" + name + "': a tree is needed");
+      fail_urdf(file, "line " + std::to_string(joint->Row()) + ": link '" + link + "' is the child of two joints, '" +
+                          other->second + "' and '" + name + "': a tree is needed");
     }
     outline.joints.emplace_back(name);
   }
   count_ignored(*robot, outline);
   return outline;
-}
-
-Eigen::Vector3d vector_of(const urdf::Vector3& v) { return {v.x, v.y, v.z}; }
-
-Eigen::Isometry3d pose_of(const urdf::Pose& pose, const std::filesystem::path& file, const std::string& element) {
-  const urdf::Rotation& r = pose.rotation;
-  Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
-  X.linear() = Eigen::Quaterniond(r.w, r.x, r.y, r.z).normalized().toRotationMatrix();
-  X.translation() = vector_of(pose.position);
-  if (!X.matrix().allFinite()) fail(file, element + ": origin is not finite");
-  return X;
-}
-
-std::filesystem::path mesh_path(const std::string& name, const std::filesystem::path& urdf_file,
-                                const PackagePaths& packages, const std::string& element) {
-  static const std::string kPackage = "package://";
-  static const std::string kFile = "file://";
-  if (name.starts_with(kFile)) return name.substr(kFile.size());
-  if (!name.starts_with(kPackage)) {
-    const std::filesystem::path path = name;
-    return path.is_absolute() ? path : urdf_file.parent_path() / path;
-  }
-  const std::size_t slash = name.find('/', kPackage.size());
-  const std::string package = name.substr(kPackage.size(), slash - kPackage.size());
-  const std::string rest = slash == std::string::npos ? "" : name.substr(slash + 1);
-  if (const auto found = packages.directories.find(package); found != packages.directories.end()) {
-    return found->second / rest;
-  }
-  for (const std::filesystem::path& root : packages.roots) {
-    if (std::filesystem::is_directory(root / package)) return root / package / rest;
-  }
-  fail(urdf_file, element + ": mesh '" + name + "': package '" + package + "' has no path (key packages)");
-}
-
-bool positive(double value) { return std::isfinite(value) && value > 0.0; }
-
-Shape shape_of(const urdf::Geometry& geometry, const std::filesystem::path& file, const UrdfSettings& settings,
-               const std::string& element, MeshCache& cache) {
-  if (geometry.type == urdf::Geometry::SPHERE) {
-    const double radius = static_cast<const urdf::Sphere&>(geometry).radius;
-    if (!positive(radius)) fail(file, element + ": sphere radius must be positive");
-    return Sphere{radius};
-  }
-  if (geometry.type == urdf::Geometry::BOX) {
-    const Eigen::Vector3d size = vector_of(static_cast<const urdf::Box&>(geometry).dim);
-    if (!size.allFinite() || size.minCoeff() <= 0.0) fail(file, element + ": box size must be positive");
-    return Box{size};
-  }
-  if (geometry.type == urdf::Geometry::CYLINDER) {
-    const auto& cylinder = static_cast<const urdf::Cylinder&>(geometry);
-    if (!positive(cylinder.radius) || !positive(cylinder.length)) {
-      fail(file, element + ": cylinder radius and length must be positive");
-    }
-    return Cylinder{cylinder.radius, cylinder.length};
-  }
-  const auto& mesh = static_cast<const urdf::Mesh&>(geometry);
-  const std::filesystem::path path = mesh_path(mesh.filename, file, settings.packages, element);
-  const Eigen::Vector3d scale = vector_of(mesh.scale);
-  if (!std::filesystem::is_regular_file(path)) {
-    fail(file, element + ": mesh '" + mesh.filename + "' does not exist: " + path.string());
-  }
-  if (!scale.allFinite() || (scale.array() == 0.0).any()) fail(file, element + ": mesh scale must be finite, not 0");
-  auto& entry = cache[{path.string(), scale.x(), scale.y(), scale.z()}];
-  if (!entry) entry = load_mesh(path, scale);
-  return entry;
-}
-
-template <typename Elements>
-std::vector<Geometry> geometry_of(const Elements& elements, const std::filesystem::path& file,
-                                  const UrdfSettings& settings, const std::string& element, MeshCache& cache) {
-  std::vector<Geometry> result;
-  for (const auto& shape : elements) {
-    if (!shape || !shape->geometry) continue;
-    result.push_back(
-        {shape_of(*shape->geometry, file, settings, element, cache), pose_of(shape->origin, file, element)});
-  }
-  return result;
 }
 
 Joint joint_of(const urdf::Joint& source, const std::filesystem::path& file, std::vector<std::string>& notes) {
@@ -201,11 +118,13 @@ Joint joint_of(const urdf::Joint& source, const std::filesystem::path& file, std
   if (source.type == urdf::Joint::FIXED) return joint;
   const bool continuous = source.type == urdf::Joint::CONTINUOUS;
   if (source.type != urdf::Joint::REVOLUTE && source.type != urdf::Joint::PRISMATIC && !continuous) {
-    fail(file, element + ": type planar or floating is not supported (fixed, revolute, continuous, prismatic are)");
+    fail_urdf(file,
+              element + ": type planar or floating is not supported (fixed, revolute, continuous, prismatic are)");
   }
   joint.type = source.type == urdf::Joint::PRISMATIC ? JointType::prismatic : JointType::revolute;
   const double length = vector_of(source.axis).norm();
-  if (!positive(length)) fail(file, element + ": axis must be a finite vector that is not zero");
+  if (!(std::isfinite(length) && length > 0.0))
+    fail_urdf(file, element + ": axis must be a finite vector that is not zero");
   joint.axis = vector_of(source.axis) / length;
   if (source.limits) {
     joint.velocity = source.limits->velocity;
@@ -217,16 +136,16 @@ Joint joint_of(const urdf::Joint& source, const std::filesystem::path& file, std
     joint.upper = 2.0 * std::numbers::pi;
     notes.push_back(element + " is continuous: its position is limited to two turns, -2 pi to 2 pi");
   } else if (!source.limits) {
-    fail(file, element + ": has no <limit>");
+    fail_urdf(file, element + ": has no <limit>");
   }
   if (!std::isfinite(joint.lower) || !std::isfinite(joint.upper) || !std::isfinite(joint.velocity)) {
-    fail(file, element + ": limit is not finite");
+    fail_urdf(file, element + ": limit is not finite");
   }
-  if (joint.lower > joint.upper) fail(file, element + ": lower limit is above the upper limit");
+  if (joint.lower > joint.upper) fail_urdf(file, element + ": lower limit is above the upper limit");
   if (source.mimic) {
     joint.mimic = Mimic{source.mimic->joint_name, source.mimic->multiplier, source.mimic->offset};
     if (!std::isfinite(joint.mimic->multiplier) || !std::isfinite(joint.mimic->offset)) {
-      fail(file, element + ": mimic is not finite");
+      fail_urdf(file, element + ": mimic is not finite");
     }
   }
   return joint;
@@ -267,9 +186,10 @@ void check_mimics(const RobotDescription& description, const std::filesystem::pa
     for (std::size_t steps = 0; driver->mimic; ++steps) {
       const auto found = by_name.find(driver->mimic->joint);
       if (found == by_name.end() || found->second->type == JointType::fixed) {
-        fail(file, "joint '" + driver->name + "': mimics '" + driver->mimic->joint + "', which is not a moving joint");
+        fail_urdf(file,
+                  "joint '" + driver->name + "': mimics '" + driver->mimic->joint + "', which is not a moving joint");
       }
-      if (steps > description.joints.size()) fail(file, "joint '" + joint.name + "': mimics itself");
+      if (steps > description.joints.size()) fail_urdf(file, "joint '" + joint.name + "': mimics itself");
       driver = found->second;
     }
   }
@@ -291,18 +211,14 @@ RobotDescription read_urdf(const std::filesystem::path& file, const UrdfSettings
     std::set<std::string> loose;
     for (const auto& [name, link] : model->links_) loose.insert(name);
     for (const Link& link : description.links) loose.erase(link.name);
-    fail(file, "link '" + *loose.begin() + "' is part of a loop: a tree is needed");
+    fail_urdf(file, "link '" + *loose.begin() + "' is part of a loop: a tree is needed");
   }
   check_mimics(description, file);
 
   MeshCache cache;
   for (Link& link : description.links) {
     if (settings.without_geometry.contains(link.name)) continue;
-    const urdf::Link& source = *model->links_.at(link.name);
-    const std::string element = "link '" + link.name + "'";
-    link.collision = settings.geometry == LinkGeometry::visual
-                         ? geometry_of(source.visual_array, file, settings, element, cache)
-                         : geometry_of(source.collision_array, file, settings, element, cache);
+    link.collision = geometry_of(*model->links_.at(link.name), file, settings, cache);
   }
   for (const auto& [tag, count] : outline.ignored) {
     description.notes.push_back(file.filename().string() + ": <" + tag + "> ignored (" + std::to_string(count) + ")");

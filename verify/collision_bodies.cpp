@@ -159,7 +159,7 @@ double CollisionBodies::clearance(const std::set<Pair>& except, double horizon) 
     const Part& b = data_->parts[static_cast<std::size_t>(j)];
     if (except.count({a.name, b.name}) == 1 || a.object.getAABB().distance(b.object.getAABB()) >= least) continue;
     fcl::DistanceRequestd request;
-    fcl::DistanceResultd result;
+    fcl::DistanceResultd result(least);  // only nearer pairs of triangles are descended to
     // Between triangles: FCL's distance between primitives (GJK) is off by millimetres for some poses of cylinders.
     fcl::distance(&a.surface, &b.surface, request, result);
     least = std::min(least, std::max(0.0, result.min_distance));

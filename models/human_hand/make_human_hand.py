@@ -144,7 +144,7 @@ def write_urdf(path):
                  "     Written by make_human_hand.py, which names the sources. -->", '<robot name="human_hand">'])
     # One box over the index and middle metacarpals, one over the ring finger's.
     link("palm", (box((0.14 * HL, 0.21 * HL, 0.44 * HL), (0, 0.045 * HL, -0.22 * HL)),
-                  box((0.12 * HL, 0.09 * HL, 0.38 * HL), (0, -0.105 * HL, -0.25 * HL))))
+                  box((0.12 * HL, 0.08 * HL, 0.38 * HL), (0, -0.1 * HL, -0.25 * HL))))
     thumb()
     for letter in "IMRL":
         finger(letter)
@@ -174,10 +174,10 @@ def write_yaml(path):
         contacts.append(point(name, last, pulp, slope, f"{name}_tip"))
     for number_of, (y, z) in enumerate(((0.12, -0.08), (-0.02, -0.08), (0.02, -0.30)), 1):
         contacts.append(point("palm", "palm", (0.07 * HL, y * HL, z * HL), (1, 0, 0), f"palm_{number_of}"))
-    pairs = ["allowed_collisions:  # always touching: found by sampling configurations"]
+    pairs = ["allowed_collisions:  # two joints apart, but built around one centre"]
     pairs += [f"  - [palm, {name}_mcp]" for name in ("index", "middle", "ring")]
-    pairs += ["  - [palm, thumb_metacarpal]", "  - [palm, little_base]", "  - [palm, forearm]",
-              "  - [little_metacarpal, little_mcp]", "  - [little_metacarpal, forearm]"]
+    pairs += ["  - [palm, thumb_metacarpal]", "  - [little_metacarpal, little_mcp]", "  - [palm, forearm]",
+              "  - [little_metacarpal, forearm]"]
     path.write_text("\n".join(lines + tips + contacts + pairs) + "\n")
 
 

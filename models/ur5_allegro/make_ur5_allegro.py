@@ -173,9 +173,7 @@ def hand_yaml():
     lines = ["# SPDX-FileCopyrightText: 2026 The opponens authors", "# SPDX-License-Identifier: BSD-3-Clause",
              "# Written by make_ur5_allegro.py.", "urdf: allegro_right.urdf", "palm_link: palm_link",
              f"joints: [{', '.join(joints[:8])},", f"         {', '.join(joints[8:])}]"]
-    pairs = ["allowed_collisions:  # always touching: found by sampling configurations",
-             "  - [palm_link, link_13.0]"]
-    return "\n".join(lines + surface_points() + mapping() + pairs) + "\n"
+    return "\n".join(lines + surface_points() + mapping()) + "\n"
 
 
 here = Path(__file__).resolve().parent

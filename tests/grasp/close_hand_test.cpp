@@ -80,10 +80,11 @@ TEST(CloseHand, FingersStopShortOfObstacles) {
   const Workbench free(scene);
   const HandPose start = before_the_object(free, 0.045);
   Eigen::Isometry3d X_WB = Eigen::Isometry3d::Identity();
-  X_WB.translation() = Eigen::Vector3d(0.045, 0.0, 0.0);
+  X_WB.translation() = Eigen::Vector3d(0.03, 0.0, 0.0);
   scene.bodies.push_back(
-      {"plate", X_WB, {{robot::Box{Eigen::Vector3d(0.004, 0.2, 0.08)}, Eigen::Isometry3d::Identity()}}});
+      {"plate", X_WB, {{robot::Box{Eigen::Vector3d(0.004, 0.2, 0.05)}, Eigen::Isometry3d::Identity()}}});
   const Workbench blocked(scene);
+  ASSERT_GT(obstacle_distance(blocked.closing, start, 0.01), 0.003);
   const auto touching = close_hand(free.closing, start);
   const auto stopped = close_hand(blocked.closing, start);
   ASSERT_TRUE(touching.has_value() && stopped.has_value());

@@ -13,7 +13,8 @@
 #include <gtest/gtest.h>
 
 #include "core/require.hpp"
-#include "robot/hand_mapping.hpp"
+#include "core/rng.hpp"
+#include "robot/collision.hpp"
 
 namespace opponens::robot {
 namespace {
@@ -254,6 +255,28 @@ TEST_F(LoadRobot, RealRobotsLoadWithTheirPointsOnTheSurface) {
   }
   EXPECT_GT(triangles, 200000u);
   EXPECT_EQ(load_hand(folder + "dex_allegro_right.yaml").hand_joints.size(), 16u);
+}
+
+/// A pair that touches wherever the joints are would make every configuration useless: it belongs in the YAML.
+TEST_F(LoadRobot, NoPairAlwaysCollides) {
+  for (const RobotDescription& description :
+       {load_robot(ours("ur5_allegro/ur5_allegro_right.yaml")), load_hand(ours("human_hand/human_hand.yaml"))}) {
+    const RobotModel model(description);
+    const CollisionChecker checker(model, Scene{});
+    Rng rng(31);
+    std::map<BodyPair, int> count;
+    int free = 0;
+    const int samples = 300;
+    for (int sample = 0; sample < samples; ++sample) {
+      Eigen::VectorXd q(model.dof());
+      for (int i = 0; i < model.dof(); ++i) q[i] = rng.uniform(model.lower()[i], model.upper()[i]);
+      const std::vector<BodyPair> pairs = checker.colliding_pairs(q);
+      for (const BodyPair& pair : pairs) ++count[pair];
+      free += pairs.empty() ? 1 : 0;
+    }
+    for (const auto& [pair, times] : count) EXPECT_LT(times, samples / 2) << pair.first << " " << pair.second;
+    EXPECT_GT(free, samples / 20) << description.name;
+  }
 }
 
 TEST_F(LoadRobot, HumanHandIsAsPublished) {
