@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "robot/mesh.hpp"
+#include "verify/nonnegative_least_squares.hpp"
 
 namespace opponens::verify {
 namespace {
@@ -113,6 +114,7 @@ double Solid::distance(const Eigen::Vector3d& p) const {
 }
 
 double Solid::normal_angle(const Eigen::Vector3d& p, const Eigen::Vector3d& direction, double reach) const {
+  std::vector<Eigen::Vector3d> normals;
   double least = std::numbers::pi;
   for (Eigen::Index i = 0; i < mesh_.triangles.cols(); ++i) {
     const Eigen::Vector3d a = mesh_.vertices.col(mesh_.triangles(0, i));
@@ -120,9 +122,14 @@ double Solid::normal_angle(const Eigen::Vector3d& p, const Eigen::Vector3d& dire
     const Eigen::Vector3d e2 = mesh_.vertices.col(mesh_.triangles(2, i)) - a;
     const Eigen::Vector3d n = e1.cross(e2);
     if (n.norm() == 0.0 || triangle_distance(i, p) > reach) continue;
+    normals.push_back(n.normalized());
     least = std::min(least, std::atan2(n.cross(direction).norm(), n.dot(direction)));
   }
-  return least;
+  if (normals.empty()) return least;
+  Eigen::MatrixXd N(3, static_cast<Eigen::Index>(normals.size()));
+  for (std::size_t i = 0; i < normals.size(); ++i) N.col(static_cast<Eigen::Index>(i)) = normals[i];
+  const Eigen::Vector3d nearest = N * nonnegative_least_squares(N, direction.normalized()).x;
+  return std::min(least, std::atan2((direction.normalized() - nearest).norm(), nearest.norm()));
 }
 
 }  // namespace opponens::verify

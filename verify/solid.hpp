@@ -22,7 +22,9 @@ class Solid {
   double distance(const Eigen::Vector3d& p) const;
   /// Depth of p inside, m; 0 outside.
   double depth(const Eigen::Vector3d& p) const { return inside(p) ? distance(p) : 0.0; }
-  /// Smallest angle, rad, between the direction and an outward triangle normal within `reach` m of p; pi when none is.
+  /// Smallest angle, rad, between a direction and the cone that the outward normals of the triangles within `reach` m
+  /// of p span (at an edge every direction between its faces' normals is a surface normal); pi when no triangle is
+  /// near.
   double normal_angle(const Eigen::Vector3d& p, const Eigen::Vector3d& direction, double reach) const;
 
   bool closed() const { return closed_; }

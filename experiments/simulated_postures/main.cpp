@@ -147,9 +147,9 @@ constexpr const char* kHead = R"(# SPDX-FileCopyrightText: 2026 The opponens aut
 # Flexion positive; abduction positive away from the middle finger. Channels: the 22 sensors of a CyberGlove.
 #
 # Postures: a parametric hand (models/human_hand; segment lengths of Buchholz, Armstrong and Goldstein 1992,
-# doi:10.1080/00140139208967812) closed on simple objects until its joints are blocked. They and the spreads below were
-# fixed before any synergy of them was compared with a published one. Agreement of an analysis of simulated movements
-# with recorded ones proves nothing about humans.
+# doi:10.1080/00140139208967812) closed on simple objects until its joints are blocked. No number here was chosen by
+# comparison with published synergies; what changed after the first analysis, and why, stands in the README of
+# experiments/simulated_postures. Agreement of simulated movements with recorded ones proves nothing about humans.
 #
 # Grasp types: Cutkosky 1989 (doi:10.1109/70.34763). family: the caption of the paper's Fig. 9 names one example of each
 # of four families (assumed: false); the numbers of the families, and the families of all other types, are ASSUMED.
@@ -189,7 +189,9 @@ void write(std::ostream& out, const YAML::Node& config, const Hand& hand) {
   Writer writer(out, hand);
   out << kHead << "\n";
   writer.names();
-  out << "# Joint ranges: American Academy of Orthopaedic Surgeons 1965, as in models/human_hand.\n";
+  out << "# Joint ranges, as in models/human_hand: most upper limits of the American Academy of Orthopaedic Surgeons "
+         "1965;\n"
+         "# T_ROT, PALM_ARCH and the lower limits of flexion are assumed there, without a source.\n";
   writer.posture("lower: ", hand.model.lower());
   out << "\n";
   writer.posture("upper: ", hand.model.upper());

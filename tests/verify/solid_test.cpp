@@ -64,7 +64,9 @@ TEST(Solid, NormalAngle) {
   EXPECT_NEAR(box.normal_angle(on_face, {1, 0, 0}, 1e-3), 0.0, 1e-7);
   EXPECT_NEAR(box.normal_angle(on_face, {1, 1, 0}, 1e-3), std::numbers::pi / 4, 1e-12);
   EXPECT_NEAR(box.normal_angle(on_face, {-1, 0, 0}, 1e-3), std::numbers::pi, 1e-7);
-  EXPECT_NEAR(box.normal_angle({1, 1, 0.3}, {0, 1, 0}, 1e-3), 0.0, 1e-7);  // at an edge either face will do
+  EXPECT_NEAR(box.normal_angle({1, 1, 0.3}, {0, 1, 0}, 1e-3), 0.0, 1e-7);  // at an edge either face will do,
+  EXPECT_NEAR(box.normal_angle({1, 1, 0.3}, {1, 2, 0}, 1e-3), 0.0, 1e-7);  // and all between them
+  EXPECT_NEAR(box.normal_angle({1, 1, 0.3}, {1, 1, std::sqrt(2.0)}, 1e-3), std::numbers::pi / 4, 1e-12);
   EXPECT_EQ(box.normal_angle({3, 0, 0}, {1, 0, 0}, 1e-3), std::numbers::pi);
 }
 
