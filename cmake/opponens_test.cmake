@@ -1,6 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The opponens authors
 # SPDX-License-Identifier: BSD-3-Clause
 
+# The system's Python, which has Debian's h5py; another one in PATH may not.
+set(OPPONENS_PYTHON /usr/bin/python3)
+
 # opponens_test(name LABEL label SOURCES ... LIBRARIES ...): one GoogleTest executable; each case is a ctest test.
 function(opponens_test name)
   cmake_parse_arguments(ARG "" "LABEL;TIMEOUT" "SOURCES;LIBRARIES" ${ARGN})

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include <urdf_model/link.h>
+
 #include "core/require.hpp"
 #include "robot/mesh.hpp"
 

@@ -8,12 +8,14 @@
 #include <string>
 #include <tuple>
 
-#include <urdf_model/link.h>
-
 #include "robot/geometry.hpp"
 #include "robot/read_urdf.hpp"
 
-// Internal to reading URDFs: included by .cpp files only, since it shows urdfdom's types.
+namespace urdf {
+class Link;
+class Pose;
+class Vector3;
+}  // namespace urdf
 
 namespace opponens::robot {
 

@@ -129,6 +129,8 @@ double Solid::normal_angle(const Eigen::Vector3d& p, const Eigen::Vector3d& dire
   Eigen::MatrixXd N(3, static_cast<Eigen::Index>(normals.size()));
   for (std::size_t i = 0; i < normals.size(); ++i) N.col(static_cast<Eigen::Index>(i)) = normals[i];
   const Eigen::Vector3d nearest = N * nonnegative_least_squares(N, direction.normalized()).x;
+  // Outside the polar cone the projection is nearer than any one normal; inside it, it is zero and says nothing.
+  if (nearest.norm() < 1e-12) return least;
   return std::min(least, std::atan2((direction.normalized() - nearest).norm(), nearest.norm()));
 }
 

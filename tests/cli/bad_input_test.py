@@ -75,7 +75,7 @@ class BadInput(unittest.TestCase):
         text = rows()
         text[50] = text[50].replace("0.2500", "many", 1)
         self.ingest([":52", "many"], [HEADER, *text])
-        self.ingest(["L_YAWN"], [HEADER.replace("W_YAW", "L_YAWN"), *rows()])
+        self.ingest(["W_YAW"], [HEADER.replace("W_YAW", "L_YAWN"), *rows()])
 
     def test_missing_files(self):
         self.refuse(2, ["nowhere"], "ingest", self.root / "nowhere", "--store", self.store, "--source",
@@ -139,10 +139,10 @@ class BadInput(unittest.TestCase):
         # Root may write anywhere, so the folder lies on a read-only system: below /proc nothing can be made.
         self.refuse(2, ["/proc/opponens"], "simulate", "--store", "/proc/opponens", store="/proc/opponens")
 
-    def damaged(self, change):
+    def damaged(self, change, which=-1):
         store = pathlib.Path(tempfile.mkdtemp(dir=self.root)) / "store"
         shutil.copytree(self.store, store)
-        file = sorted(store.glob("*.h5"))[-1]
+        file = sorted(store.glob("*.h5"))[which]
         data = bytearray(file.read_bytes())
         file.chmod(0o644)
         file.write_bytes(change(data))
@@ -153,10 +153,14 @@ class BadInput(unittest.TestCase):
             data[len(data) // 2] ^= 4
             return bytes(data)
 
-        for change in (flip, lambda data: bytes(data[: len(data) // 3]), lambda data: b""):
-            store = self.damaged(change)
-            for command in (["grasp"], ["analyze"], ["plan"], ["report", "--out", self.root / "r.html"], ["show"]):
-                self.refuse(3, [".h5"], command[0], "--store", store, *command[1:], store=store)
+        # The first file holds recordings, the last one the synergies: a command that reads them must refuse.
+        readers = {0: (["retarget"], ["analyze", "--input", "glove"]),
+                   -1: (["grasp"], ["plan"], ["report", "--out", self.root / "r.html"])}
+        for which, commands in readers.items():
+            for change in (flip, lambda data: bytes(data[: len(data) // 3]), lambda data: b""):
+                store = self.damaged(change, which)
+                for command in commands:
+                    self.refuse(3, [".h5"], command[0], "--store", store, *command[1:], store=store)
 
     def test_verify_finds_damage(self):
         store = self.damaged(lambda data: bytes(data[:100]))

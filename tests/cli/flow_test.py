@@ -5,6 +5,7 @@ docs/cli.md; the chain of `why`; h5py reads what was stored."""
 import json
 import math
 import pathlib
+import shutil
 import tempfile
 import unittest
 from html.parser import HTMLParser
@@ -95,9 +96,12 @@ class Pipeline(unittest.TestCase):
         self.assertGreater(verify["worst_clearance_m"], 0.0)
 
     def test_both_planners_answer(self):
-        document = must("plan", "--store", self.two / "store", "--scene", SCENE, "--planner", "rrtconnect")
-        self.assertEqual(document["runs"][0]["status"], "solved")
-        self.assertEqual(must("verify", "--store", self.two / "store")["failed"], [])
+        with tempfile.TemporaryDirectory() as folder:
+            store = pathlib.Path(folder) / "store"
+            shutil.copytree(self.two / "store", store)
+            document = must("plan", "--store", store, "--scene", SCENE, "--planner", "rrtconnect")
+            self.assertEqual(document["runs"][0]["status"], "solved")
+            self.assertEqual(must("verify", "--store", store)["failed"], [])
 
     def test_why_leads_back_to_the_recordings(self):
         path = self.documents["plan"]["ids"][0]

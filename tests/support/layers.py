@@ -38,7 +38,7 @@ def offences(root: pathlib.Path):
                 if kind == '"':
                     if first not in allowed | {module}:
                         yield f"{name}:{number}: {module} may not include {target}"
-                elif path.suffix == ".hpp" and "/" in target:
+                elif path.suffix == ".hpp" and ("/" in target or target.endswith((".h", ".hpp"))):
                     if name == PLANNER_HEADER and target.startswith("ompl/"):
                         continue
                     if not target.startswith(HEADER_LIBRARIES):

@@ -28,6 +28,7 @@ class Layers(unittest.TestCase):
             ("analysis/a.cpp", '#include "robot/mesh.hpp"'),
             ("storage/readers/a.cpp", '#include "robot/mesh.hpp"'),
             ("robot/a.hpp", "#include <fcl/fcl.h>"),
+            ("storage/a.hpp", "#include <hdf5.h>"),
             ("motion/other.hpp", "#include <ompl/base/Planner.h>"),
             ("grasp/a.cpp", "#include <fstream>"),
         ]:
