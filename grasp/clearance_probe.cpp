@@ -18,14 +18,14 @@ constexpr double kFar = 0.05;              // m, distances beyond it do not matt
 Clearance ClearanceProbe::operator()(const HandPose& pose, const std::vector<int>& links, Watch watch) {
   scene_.hand.link_poses(pose.q, X_HL_);
   near_.clear();
-  Clearance least{kFar, -1};
+  Clearance least{kFar, -1, {}};
   for (const int link : links) look_at_object(pose.X_OH, static_cast<std::size_t>(link), least);
   // Most promising first: once a point's rough distance exceeds the best by the grid's error, the rest cannot win.
   std::sort(near_.begin(), near_.end(), [](const Near& a, const Near& b) { return a.rough < b.rough; });
   for (const Near& point : near_) {
     if (point.rough > least.value + scene_.target.grid->spacing()) break;
     const double exact = scene_.target.distance->signed_distance(point.p_O);
-    if (exact < least.value) least = {exact, point.link};
+    if (exact < least.value) least = {exact, point.link, point.p_O};
   }
   for (const int link : links) {
     if (watch != Watch::object) look_at_obstacles(pose.X_OH, static_cast<std::size_t>(link), least);
@@ -45,7 +45,7 @@ void ClearanceProbe::look_at_object(const Eigen::Isometry3d& X_OH, std::size_t l
     if (rough < kExactWithin) {
       near_.push_back({rough, static_cast<int>(link), p_O});
     } else if (rough < least.value) {
-      least = {rough, static_cast<int>(link)};
+      least = {rough, static_cast<int>(link), p_O};
     }
   }
 }
@@ -57,7 +57,7 @@ void ClearanceProbe::look_at_obstacles(const Eigen::Isometry3d& X_OH, std::size_
   if (scene_.target.obstacle_distance(center, kFar).value - radius - kObstacleMargin > least.value) return;
   for (const Eigen::Vector3d& p_L : scene_.surface.medium[link]) {
     const double free = scene_.target.obstacle_distance(X_OL * p_L, kFar).value - kObstacleMargin;
-    if (free < least.value) least = {free, -1};
+    if (free < least.value) least = {free, -1, {}};
   }
 }
 
@@ -73,7 +73,7 @@ void ClearanceProbe::look_at_hand(std::size_t link, Clearance& least) const {
       const double reach = std::max(least.value + kSelfMargin, 0.0) + scene_.surface.link_radius[other];
       if ((p_B - scene_.surface.link_center[other]).squaredNorm() > reach * reach) continue;
       const double free = scene_.surface.links[other].query(p_B, kFar).value - kSelfMargin;
-      if (free < least.value) least = {free, -1};
+      if (free < least.value) least = {free, -1, {}};
     }
   }
 }

@@ -12,6 +12,7 @@ namespace opponens::grasp {
 struct Clearance {
   double value = std::numeric_limits<double>::infinity();  ///< m
   int link = -1;  ///< the link that is nearest to the object; -1: something else is nearer, or all is far
+  Eigen::Vector3d p_O = Eigen::Vector3d::Zero();  ///< that link's nearest point
 };
 
 /// What a moving part of the hand looks out for.

@@ -13,11 +13,14 @@
 namespace opponens::grasp {
 namespace {
 
-constexpr double kTouch = 0.0002;     // m, contact is met within this
-constexpr double kMaxRetreat = 0.03;  // m
-constexpr double kMaxAdvance = 0.02;  // m
-constexpr double kMaxTravel = 0.5;    // rad of the fastest joint of a finger
-constexpr double kMaxOpening = 1.2;   // rad
+constexpr double kTouch = 0.0002;      // m, contact is met within this
+constexpr double kMaxRetreat = 0.03;   // m
+constexpr double kMaxAdvance = 0.02;   // m
+constexpr double kMaxTravel = 0.5;     // rad of the fastest joint of a finger
+constexpr double kMaxOpening = 1.2;    // rad
+constexpr double kOpeningStep = 0.06;  // rad
+constexpr double kMaxPush = 0.2;       // rad of one joint in one step
+constexpr int kMaxPushes = 25;
 constexpr int kMaxSteps = 80;
 
 /// A one-parameter motion s -> pose with a bound of how fast its points move, m per unit of s.
@@ -55,15 +58,45 @@ Stop advance(const Motion& motion, const std::vector<int>& links, Watch watch, C
   return {clear, at_clear, false};
 }
 
-/// Opens a finger until it is clear; the amount, or nullopt.
+double largest(const Eigen::VectorXd& direction, const std::vector<int>& joints) {
+  double value = 0.0;
+  for (const int j : joints) value = std::max(value, std::abs(direction[j]));
+  return value;
+}
+
+/// Opens a finger against the closing direction until it is clear; nullopt when that does not free it.
 std::optional<HandPose> open_finger(const ClosingScene& scene, const Finger& finger, const HandPose& start,
                                     ClearanceProbe& probe) {
+  const double fastest = std::max(largest(scene.direction, finger.joints), 0.05);
   HandPose pose = start;
-  for (double s = 0.0; s <= kMaxOpening; s += 0.06) {
+  for (double s = 0.0; s <= kMaxOpening; s += kOpeningStep) {
     pose.q = start.q;
-    for (const int j : finger.joints) pose.q[j] -= s * scene.direction[j];
+    for (const int j : finger.joints) pose.q[j] -= s / fastest * scene.direction[j];
     pose.q = scene.hand.clip(pose.q);
     if (probe(pose, finger.links, Watch::object).value > kTouch) return pose;
+  }
+  return std::nullopt;
+}
+
+/// Moves a finger out of the object by the least joint motion that lifts its deepest point, again and again; nullopt
+/// when it is not clear after a bounded number of steps.
+std::optional<HandPose> push_out(const ClosingScene& scene, const Finger& finger, const HandPose& start,
+                                 ClearanceProbe& probe) {
+  HandPose pose = start;
+  for (int step = 0; step < kMaxPushes; ++step) {
+    const Clearance deepest = probe(pose, finger.links, Watch::object);
+    if (deepest.value > kTouch) return pose;
+    const Eigen::Vector3d out = pose.X_OH.linear().transpose() * scene.target.grid->query(deepest.p_O).gradient;
+    const Eigen::VectorXd slope =
+        scene.hand.point_jacobian(probe.link_poses(), deepest.link, pose.X_OH.inverse() * deepest.p_O).transpose() *
+        out;
+    Eigen::VectorXd motion = Eigen::VectorXd::Zero(slope.size());
+    for (const int j : finger.joints) motion[j] = slope[j];
+    const double reach = motion.squaredNorm();
+    if (reach < 1e-8) return std::nullopt;
+    motion *= (2.0 * kTouch - deepest.value) / reach;
+    const double turn = largest(motion, finger.joints);
+    pose.q = scene.hand.clip(pose.q + std::min(1.0, kMaxPush / turn) * motion);
   }
   return std::nullopt;
 }
@@ -80,12 +113,6 @@ bool retreat(const ClosingScene& scene, HandPose& pose, ClearanceProbe& probe) {
     if (moved > kMaxRetreat) return false;
     pose.X_OH.translation() += step * back;
   }
-}
-
-double largest(const Eigen::VectorXd& direction, const std::vector<int>& joints) {
-  double value = 0.0;
-  for (const int j : joints) value = std::max(value, std::abs(direction[j]));
-  return value;
 }
 
 /// Bound of the speed of a finger's points when its joints move along direction: each joint times its reach.
@@ -177,7 +204,8 @@ std::optional<HandPose> close_hand(const ClosingScene& scene, const HandPose& st
   HandPose pose{start.X_OH, scene.hand.clip(start.q)};
   if (!retreat(scene, pose, probe)) return std::nullopt;
   for (const Finger& finger : scene.surface.fingers) {
-    const auto opened = open_finger(scene, finger, pose, probe);
+    auto opened = open_finger(scene, finger, pose, probe);
+    if (!opened) opened = push_out(scene, finger, pose, probe);
     if (!opened) return std::nullopt;
     pose = *opened;
   }

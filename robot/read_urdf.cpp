@@ -83,6 +83,23 @@ void count_ignored(const TiXmlElement& element, Outline& outline) {
   }
 }
 
+std::string link_of(const TiXmlElement& joint, const char* side) {
+  const TiXmlElement* element = joint.FirstChildElement(side);
+  const char* link = element ? element->Attribute("link") : nullptr;
+  return link ? link : "";
+}
+
+/// Loops are found here: urdfdom would tie its shared pointers into them and never free them.
+void check_loops(const std::map<std::string, std::string>& parent_of, const std::filesystem::path& file) {
+  for (const auto& [start, parent] : parent_of) {
+    auto link = parent_of.find(start);
+    for (std::size_t steps = 0; link != parent_of.end(); ++steps) {
+      if (steps > parent_of.size()) fail_urdf(file, "link '" + start + "' hangs on a loop: a tree is needed");
+      link = parent_of.find(link->second);
+    }
+  }
+}
+
 Outline outline_of(const std::filesystem::path& file, const std::string& text) {
   TiXmlDocument document;
   document.Parse(text.c_str());
@@ -93,19 +110,25 @@ Outline outline_of(const std::filesystem::path& file, const std::string& text) {
   if (!robot) fail_urdf(file, "has no <robot> element");
   Outline outline;
   std::map<std::string, std::string> joint_of_child;
+  std::map<std::string, std::string> parent_of;
   for (const TiXmlElement* joint = robot->FirstChildElement("joint"); joint;
        joint = joint->NextSiblingElement("joint")) {
     const char* name = joint->Attribute("name");
-    const TiXmlElement* child = joint->FirstChildElement("child");
-    const char* link = child ? child->Attribute("link") : nullptr;
-    if (!name || !link) continue;  // urdfdom complains about both
-    const auto [other, is_new] = joint_of_child.emplace(link, name);
+    const std::string parent = link_of(*joint, "parent");
+    const std::string child = link_of(*joint, "child");
+    if (!name || parent.empty() || child.empty()) {
+      fail_urdf(file, "line " + std::to_string(joint->Row()) + ": joint '" + (name ? name : "") +
+                          "' needs a name, a parent link and a child link");
+    }
+    const auto [other, is_new] = joint_of_child.emplace(child, name);
     if (!is_new) {
-      fail_urdf(file, "line " + std::to_string(joint->Row()) + ": link '" + link + "' is the child of two joints, '" +
+      fail_urdf(file, "line " + std::to_string(joint->Row()) + ": link '" + child + "' is the child of two joints, '" +
                           other->second + "' and '" + name + "': a tree is needed");
     }
+    parent_of[child] = parent;
     outline.joints.emplace_back(name);
   }
+  check_loops(parent_of, file);
   count_ignored(*robot, outline);
   return outline;
 }
@@ -207,12 +230,6 @@ RobotDescription read_urdf(const std::filesystem::path& file, const UrdfSettings
   std::map<std::string, std::vector<std::string>> children;
   for (const std::string& joint : outline.joints) children[model->joints_.at(joint)->parent_link_name].push_back(joint);
   append_tree(*model, children, file, description, model->getRoot()->name);
-  if (description.links.size() != model->links_.size()) {
-    std::set<std::string> loose;
-    for (const auto& [name, link] : model->links_) loose.insert(name);
-    for (const Link& link : description.links) loose.erase(link.name);
-    fail_urdf(file, "link '" + *loose.begin() + "' is part of a loop: a tree is needed");
-  }
   check_mimics(description, file);
 
   MeshCache cache;

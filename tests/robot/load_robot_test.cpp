@@ -97,9 +97,11 @@ TEST_F(LoadRobot, ErrorsNameFileAndElement) {
                   {"hand.urdf", "'j'", "'k'"});
   expect_contains(urdf_error(robot(links("abc") + joint("j", "a", "b"))), {"hand.urdf", "root"});
   expect_contains(urdf_error(robot(links("abc") + joint("j", "b", "c") + joint("k", "c", "b"))), {"hand.urdf", "loop"});
-  expect_contains(urdf_error(robot(links("ab") + joint("j", "a", "b") + joint("k", "b", "a"))), {"hand.urdf", "root"});
+  expect_contains(urdf_error(robot(links("ab") + joint("j", "a", "b") + joint("k", "b", "a"))), {"hand.urdf", "loop"});
   expect_contains(urdf_error(robot(links("abc") + joint("i", "a", "b") + joint("j", "a", "c") + joint("k", "b", "c"))),
                   {"hand.urdf", "'c'", "'j'", "'k'"});
+  expect_contains(urdf_error(robot(links("ab") + "<joint name='j' type='fixed'><parent link='a'/></joint>")),
+                  {"hand.urdf", "'j'", "child"});
   expect_contains(urdf_error("<robot name='r'>"), {"hand.urdf"});
   expect_contains(urdf_error("not xml"), {"hand.urdf"});
   expect_contains(urdf_error(""), {"hand.urdf"});
