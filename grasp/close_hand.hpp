@@ -37,13 +37,13 @@ struct HandPose {
 };
 
 /// Brings a hand near an object into touch with it. The palm draws back along its approach direction until it is out of
-/// the object; fingers that still penetrate open against the closing direction, or by the least motion that frees them;
-/// the hand advances by at most 2 cm until it touches; then finger by finger the joints move along the closing
-/// direction until the finger touches (or, when that does not reach the object, along the synergy combination that
-/// brings the finger's contact points nearer). A joint at its limit stays there. Where a link touches, the joints that
-/// move it stop, and the joints beyond it go on. A finger that meets nothing stays where it was. Contact is exact
-/// (MeshDistance) to 0.2 mm at the hand's sampled points. nullopt: the hand cannot be freed from the object in this
-/// way.
+/// the object; fingers that still penetrate open against the closing direction or, where that does not free them, by
+/// the least joint motion that does; the hand advances by at most 2 cm until it touches. Then finger by finger the
+/// joints move along the closing direction until the finger touches (or, when that does not reach the object, along the
+/// synergy combination that brings the finger's contact points nearer). A joint at its limit stays there. Where a link
+/// touches, the joints that move it stop, and the joints beyond it go on. A finger that meets nothing stays where it
+/// was. Contact is exact (MeshDistance) to 0.2 mm at the hand's sampled points. nullopt: the hand cannot be freed from
+/// the object.
 std::optional<HandPose> close_hand(const ClosingScene& scene, const HandPose& start);
 
 /// Contacts of a posture: every contact point of the hand that is nearer than tolerance to the surface, and for every

@@ -15,8 +15,9 @@
 namespace opponens::grasp {
 namespace {
 
-constexpr double kPositionUnit = 0.1;       // m per unit of x: brings positions to the size of angles
-constexpr double kReach = 0.02;             // m, scale of the contact cost
+constexpr double kPositionUnit = 0.1;  // m per unit of x: brings positions to the size of angles
+constexpr double kReach = 0.02;        // m, scale of the contact cost
+constexpr double kBalanceWeight = 3.0;
 constexpr double kFacingDepth = 0.01;       // m
 constexpr double kPenetrationUnit = 0.005;  // m
 constexpr double kPenetrationWeight = 0.02;
@@ -107,6 +108,39 @@ double GraspObjective::add_contacts(const Eigen::Isometry3d& X_OH) {
   return cost;
 }
 
+double GraspObjective::add_balance(const Eigen::Isometry3d& X_OH) {
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();
+  Eigen::Vector3d torque = Eigen::Vector3d::Zero();
+  double total = 0.0;
+  touches_.clear();
+  const auto& points = hand_.description().contact_points;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto link = static_cast<std::size_t>(points[i].link);
+    const Eigen::Vector3d p_H = X_HL_[link] * points[i].p_L;
+    const Eigen::Vector3d p_O = X_OH * p_H;
+    const SignedDistance d = target_.grid->query(p_O);
+    const double bottom = d.value * d.value + kReach * kReach;
+    const double weight = goals_[2 * i].weight * kReach * kReach;
+    const Eigen::Vector3d n_O = X_OH.linear() * (X_HL_[link].linear() * points[i].n_L);
+    touches_.push_back({link, p_H, p_O, n_O, d.gradient, weight / bottom, -2.0 * weight * d.value / (bottom * bottom)});
+    force += touches_.back().share * n_O;
+    torque += touches_.back().share * (p_O - target_.center_of_mass).cross(n_O) / target_.rho;
+    total += touches_.back().share;
+  }
+  const double cost = kBalanceWeight * (force.squaredNorm() + torque.squaredNorm()) / (total * total);
+  const Eigen::Vector3d by_force = 2.0 * kBalanceWeight / (total * total) * force;
+  const Eigen::Vector3d by_torque = 2.0 * kBalanceWeight / (total * total * target_.rho) * torque;
+  for (const Touch& t : touches_) {
+    const Eigen::Vector3d arm = t.p_O - target_.center_of_mass;
+    const double by_share = by_force.dot(t.n_O) + by_torque.dot(arm.cross(t.n_O)) - 2.0 * cost / total;
+    const Eigen::Vector3d by_point = t.share * t.n_O.cross(by_torque) + by_share * t.share_slope * t.slope;
+    const Eigen::Vector3d by_normal = t.share * (by_force + by_torque.cross(arm));
+    add(t.link, t.p_H, X_OH.linear().transpose() * by_point);
+    pull_[t.link].torque += X_OH.linear().transpose() * t.n_O.cross(by_normal);  // turning the link turns its normal
+  }
+  return cost;
+}
+
 double GraspObjective::add_penetration(const Eigen::Isometry3d& X_OH) {
   double cost = 0.0;
   const auto penalize = [&](std::size_t link, const Eigen::Vector3d& p_H, const SignedDistance& d, double margin) {
@@ -159,7 +193,7 @@ double GraspObjective::evaluate(const HandSeed& seed, const Eigen::VectorXd& x, 
   const Eigen::VectorXd q = analysis::configuration(box_, point.y);
   hand_.link_poses(q, X_HL_);
   pull_.assign(pull_.size(), Pull{});
-  double cost = add_contacts(point.X_OH) + add_penetration(point.X_OH);
+  double cost = add_contacts(point.X_OH) + add_balance(point.X_OH) + add_penetration(point.X_OH);
   const Eigen::VectorXd violation = (q - hand_.clip(q)) / kLimitUnit;
   cost += kLimitWeight * violation.squaredNorm();
   if (!gradient) return cost;

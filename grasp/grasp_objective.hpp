@@ -26,6 +26,8 @@ struct HandSeed {
 /// contact point's outward normal, and rho(e) = e^2 / (e^2 + (2 cm)^2) (Geman and McClure 1987):
 ///   contact      sum_c w_c [ rho(d(p_c)) + rho(d(p_c + 1 cm n_c) + 1 cm) ]: on the surface, and facing it: the second
 ///                point is 1 cm deep exactly when the normals oppose; every finger weighs the same
+///   balance      3 (|sum_c s_c n_c|^2 + |sum_c s_c (p_c - com) x n_c / rho|^2) / (sum_c s_c)^2 with
+///                s_c = w_c (1 - rho(d(p_c))): normals of the touching points that cancel in force and torque
 ///   penetration  0.02 sum_s (min(0, d(p_s)) / 5 mm)^2 over points of the hand's surface
 ///   obstacles    the same with the distance to support and obstacles less 5 mm
 ///   limits       0.5 sum_j (violation / 0.1 rad)^2
@@ -46,6 +48,12 @@ class GraspObjective {
     Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< d cost / d p of the points of a link, in H
     Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< sum of p x force about H's origin
   };
+  struct Touch {  ///< a contact point of the hand, for the balance
+    std::size_t link;
+    Eigen::Vector3d p_H, p_O, n_O, slope;  ///< slope: gradient of the distance, in O
+    double share;                          ///< s_c
+    double share_slope;                    ///< d s_c / d d
+  };
   struct Goal {
     int link;
     Eigen::Vector3d p_L;
@@ -53,6 +61,7 @@ class GraspObjective {
     double weight;
   };
   double add_contacts(const Eigen::Isometry3d& X_OH);
+  double add_balance(const Eigen::Isometry3d& X_OH);
   double add_penetration(const Eigen::Isometry3d& X_OH);
   void add(std::size_t link, const Eigen::Vector3d& p_H, const Eigen::Vector3d& gradient_H);
   Eigen::VectorXd joint_gradient() const;
@@ -62,6 +71,7 @@ class GraspObjective {
   const GraspTarget& target_;
   const SynergyBox& box_;
   std::vector<Goal> goals_;
+  std::vector<Touch> touches_;
   std::vector<Eigen::Isometry3d> X_HL_;
   std::vector<Pull> pull_;
   std::int64_t evaluations_ = 0;

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cmath>
 #include <exception>
+#include <limits>
 #include <mutex>
 #include <numbers>
 #include <optional>
@@ -26,8 +27,8 @@ namespace opponens::grasp {
 namespace {
 
 constexpr int kBatch = 64;             // trials between two decisions to stop
-constexpr int kMinTrials = 256;        // before an early stop: the best of more is better
 constexpr int kSeedAttempts = 20;      // poses drawn until the palm is clear
+constexpr int kSeeds = 8;              // drawn per trial; the best by the objective is optimised
 constexpr int kMaxEvaluations = 40;    // of the objective per trial
 constexpr double kMaxStandoff = 0.08;  // m between palm and object surface
 constexpr double kMaxTilt = 0.5;       // rad between approach direction and surface normal
@@ -101,6 +102,23 @@ std::optional<HandSeed> draw_seed(const Search& search, Rng& rng) {
   return std::nullopt;
 }
 
+/// The most promising of a few seeds; nullopt when none was found.
+std::optional<HandSeed> best_seed(const Search& search, GraspObjective& objective, Rng& rng) {
+  std::optional<HandSeed> best;
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kSeeds; ++i) {
+    auto seed = draw_seed(search, rng);
+    if (!seed) break;  // twenty attempts failed: the next ones would too
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(objective.size());
+    x.tail(seed->y.size()) = seed->y;
+    const double cost = objective.evaluate(*seed, x, nullptr);
+    if (cost >= least) continue;
+    least = cost;
+    best = std::move(seed);
+  }
+  return best;
+}
+
 QualityConvention convention_of(const Search& search) {
   QualityConvention convention;
   convention.mu = search.settings.mu;
@@ -129,9 +147,9 @@ Grasp describe(const Search& search, const HandPose& closed, const HandPose& pre
 
 Trial run_trial(const Search& search, std::int64_t index) {
   Rng rng = stream(search.seed, "grasp/" + search.group.name + "/" + std::to_string(index));
-  const auto seed = draw_seed(search, rng);
-  if (!seed) return {std::nullopt, "no seed pose with a clear palm"};
   GraspObjective objective(search.hand, search.surface, search.target, search.group.box);
+  const auto seed = best_seed(search, objective, rng);
+  if (!seed) return {std::nullopt, "no seed pose with a clear palm", objective.evaluations()};
   const HandSeed best = optimize_seed(objective, *seed, search.group.box.half_width, kMaxEvaluations);
   const auto rejected = [&](std::string reason) {
     return Trial{std::nullopt, std::move(reason), objective.evaluations()};
@@ -224,6 +242,7 @@ void validate(const SearchSettings& s) {
   };
   check(s.count > 0, "count", s.count, "positive");
   check(s.max_trials > 0, "max_trials", s.max_trials, "positive");
+  check(s.min_trials >= 0, "min_trials", s.min_trials, "not negative");
   check(s.mu >= 0.0 && std::isfinite(s.mu), "mu", s.mu, "finite and not negative");
   check(s.edges >= 3, "edges", s.edges, "at least 3");
   check(s.max_penetration > 0.0, "max_penetration", s.max_penetration, "positive");
@@ -266,7 +285,7 @@ SearchResult search_grasps(const robot::RobotModel& hand, const robot::Scene& sc
     }
     result.trials += count;
     if (progress) progress(result.trials, settings.max_trials);
-    if (result.trials >= kMinTrials &&
+    if (result.trials >= settings.min_trials &&
         choose(candidates, settings).size() == static_cast<std::size_t>(settings.count)) {
       break;
     }

@@ -18,11 +18,13 @@
 namespace opponens::grasp {
 
 struct SearchSettings {
-  int count = 5;                     ///< grasps to return
-  int max_trials = 2000;             ///< seeds tried; the search stops on this count, never on a clock
-  double mu = 0.5;                   ///< friction coefficient
-  int edges = 8;                     ///< friction cone edges
-  double max_penetration = 0.001;    ///< m, of any hand point into object at the returned grasp
+  int count = 5;                   ///< grasps to return
+  int max_trials = 2000;           ///< seeds tried; the search stops on this count, never on a clock
+  int min_trials = 256;            ///< no early stop before this many, though `count` grasps exist: more trials, better
+                                   ///< grasps
+  double mu = 0.5;                 ///< friction coefficient
+  int edges = 8;                   ///< friction cone edges
+  double max_penetration = 0.001;  ///< m, of any hand point into object at the returned grasp
   double contact_tolerance = 0.001;  ///< m, a contact point closer than this to the surface touches
   double clearance_pregrasp = 0.01;  ///< m, least distance hand-object at the pre-grasp
   double slack_bound = 0.3;          ///< rad, 2-norm of the slack of a synergy grasp

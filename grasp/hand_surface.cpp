@@ -130,6 +130,7 @@ HandSurface hand_surface(const robot::RobotModel& hand, const Eigen::VectorXd& q
   HandSurface surface;
   for (const robot::Link& link : hand.links()) {
     surface.sparse.push_back(samples(link, 0.02));
+    surface.coarse.push_back(samples(link, 0.009));
     surface.medium.push_back(samples(link, 0.005));
     surface.dense.push_back(samples(link, kDense));
     surface.links.emplace_back(link.collision);

@@ -27,6 +27,7 @@ struct LinkDrive {
 /// What the search knows of a hand, made once: points on its surface, its fingers, the way its palm looks.
 struct HandSurface {
   std::vector<std::vector<Eigen::Vector3d>> sparse;  ///< per link, p_L, 20 mm apart: objective
+  std::vector<std::vector<Eigen::Vector3d>> coarse;  ///< 9 mm apart: fingers against each other while closing
   std::vector<std::vector<Eigen::Vector3d>> medium;  ///< 5 mm apart: closing
   std::vector<std::vector<Eigen::Vector3d>> dense;   ///< 2.5 mm apart: verdicts
   std::vector<BodyDistance> links;                   ///< per link, in its frame

@@ -39,6 +39,23 @@ World closing_world(const robot::CollisionChecker& closing, const robot::RobotMo
       robot.weights(), resolution);
 }
 
+namespace {
+
+/// A configuration that makes these motions invalid.
+std::optional<Eigen::VectorXd> in_the_way(const Eigen::MatrixXd& waypoints, const World& world) {
+  std::int64_t checks = 0;
+  for (const MotionCheck* check : {&world.first_invalid, &world.confirm}) {
+    for (Eigen::Index i = 1; *check && i < waypoints.rows(); ++i) {
+      const Eigen::VectorXd q_from = waypoints.row(i - 1).transpose();
+      const Eigen::VectorXd q_to = waypoints.row(i).transpose();
+      if (const auto fraction = (*check)(q_from, q_to, checks)) return q_from + *fraction * (q_to - q_from);
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
 ClosingSegment closing_segment(const Eigen::VectorXd& q_pregrasp, const Eigen::VectorXd& q_grasp,
                                const PlanningGroup& hand, const World& closing) {
   require(q_pregrasp.size() == q_grasp.size() && hand.first + hand.count <= q_grasp.size(),
@@ -50,28 +67,12 @@ ClosingSegment closing_segment(const Eigen::VectorXd& q_pregrasp, const Eigen::V
   Eigen::MatrixXd arm_first(3, q_grasp.size());
   arm_first << q_pregrasp.transpose(), between.transpose(), q_grasp.transpose();
 
-  ClosingSegment result;
-  std::int64_t checks = 0;
-  const auto valid = [&](const Eigen::MatrixXd& waypoints) {
-    for (const MotionCheck* check : {&closing.first_invalid, &closing.confirm}) {
-      if (!*check) continue;
-      for (Eigen::Index i = 1; i < waypoints.rows(); ++i) {
-        const Eigen::VectorXd q_from = waypoints.row(i - 1).transpose();
-        const Eigen::VectorXd q_to = waypoints.row(i).transpose();
-        if (const auto fraction = (*check)(q_from, q_to, checks)) {
-          result.invalid = q_from + *fraction * (q_to - q_from);
-          return false;
-        }
-      }
-    }
-    return true;
-  };
   const bool distinct = between != q_pregrasp && between != q_grasp;
-  for (const Eigen::MatrixXd& waypoints : {together, arm_first}) {
-    if (waypoints.rows() == 3 && !distinct) break;  // only the arm or only the hand moves
-    if (valid(waypoints)) return {waypoints, std::nullopt};
-  }
-  return result;
+  std::optional<Eigen::VectorXd> invalid = in_the_way(together, closing);
+  if (!invalid) return {together, std::nullopt};
+  if (distinct) invalid = in_the_way(arm_first, closing);  // else only the arm or only the hand moves
+  if (!invalid) return {arm_first, std::nullopt};
+  return {{}, invalid};
 }
 
 Result<JointPath> append_closing_segment(const JointPath& path, const Eigen::VectorXd& q_grasp,

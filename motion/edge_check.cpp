@@ -3,7 +3,6 @@
 #include "motion/edge_check.hpp"
 
 #include <cmath>
-#include <utility>
 
 #include "core/require.hpp"
 #include "motion/joint_metric.hpp"
@@ -32,7 +31,7 @@ std::optional<double> first_invalid(const Eigen::VectorXd& q_from, const Eigen::
   return std::nullopt;
 }
 
-World make_world(Validity valid, const Eigen::VectorXd& weights, double resolution, double confirm_resolution) {
+World make_world(const Validity& valid, const Eigen::VectorXd& weights, double resolution, double confirm_resolution) {
   require(static_cast<bool>(valid), "make_world: no validity given");
   require(
       std::isfinite(resolution) && resolution > 0.0 && std::isfinite(confirm_resolution) && confirm_resolution >= 0.0,
@@ -54,8 +53,8 @@ World make_world(Validity valid, const Eigen::VectorXd& weights, double resoluti
   return world;
 }
 
-World make_world(Validity valid, const Eigen::VectorXd& weights, double resolution) {
-  return make_world(std::move(valid), weights, resolution, resolution / 10.0);
+World make_world(const Validity& valid, const Eigen::VectorXd& weights, double resolution) {
+  return make_world(valid, weights, resolution, resolution / 10.0);
 }
 
 World make_world(const robot::CollisionChecker& checker, const robot::RobotModel& robot, double resolution) {

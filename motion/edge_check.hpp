@@ -26,8 +26,8 @@ std::optional<double> first_invalid(const Eigen::VectorXd& q_from, const Eigen::
 
 /// A World that asks `valid` at the given spacing, and at confirm_resolution (default: a tenth of it) to confirm an
 /// answer; confirm_resolution = 0: no confirmation.
-World make_world(Validity valid, const Eigen::VectorXd& weights, double resolution, double confirm_resolution);
-World make_world(Validity valid, const Eigen::VectorXd& weights, double resolution);
+World make_world(const Validity& valid, const Eigen::VectorXd& weights, double resolution, double confirm_resolution);
+World make_world(const Validity& valid, const Eigen::VectorXd& weights, double resolution);
 
 /// The robot's world: inside the joint limits, and free for the checker. Checker and robot are referred to and must
 /// outlive the world.

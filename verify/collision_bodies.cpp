@@ -70,13 +70,43 @@ struct CollisionBodies::Data {
   std::vector<Part> parts;                 ///< links first
   std::vector<std::pair<int, int>> pairs;  ///< indices into parts that must not touch
 
-  bool collide(const Part& a, const Part& b) const {
+  static bool collide(const Part& a, const Part& b) {
     fcl::CollisionRequestd request;
     fcl::CollisionResultd result;
     fcl::collide(&a.object, &b.object, request, result);
     // FCL's primitives are solid against everything; a mesh is a surface only.
     return result.isCollision() || (is_mesh(b.geometry.shape) && a.reaches_into(b)) ||
            (is_mesh(a.geometry.shape) && b.reaches_into(a));
+  }
+
+  static double depth(Part& link, const Part& body) {
+    if (!link.object.getAABB().overlap(body.object.getAABB()) || !collide(link, body)) return 0.0;
+    if (link.samples.cols() == 0) {
+      const auto points = robot::surface_samples({link.geometry.shape, Eigen::Isometry3d::Identity()}, 0.002);
+      link.samples.resize(3, static_cast<Eigen::Index>(points.size()));
+      for (std::size_t i = 0; i < points.size(); ++i) link.samples.col(static_cast<Eigen::Index>(i)) = points[i];
+    }
+    double depth = 0.0;
+    const Eigen::Isometry3d X_BL = body.X_WG().inverse() * link.X_WG();
+    for (const auto& point : link.samples.colwise()) depth = std::max(depth, body.solid->depth(X_BL * point));
+    const Eigen::Isometry3d X_LB = X_BL.inverse();
+    for (const auto& point : body.solid->mesh().vertices.colwise()) {
+      depth = std::max(depth, link.solid->depth(X_LB * point));
+    }
+    return depth;
+  }
+
+  void add_pairs() {
+    const int count = static_cast<int>(parts.size());
+    for (int i = 0; i < count; ++i) {
+      for (int j = i + 1; j < count; ++j) {
+        const int a = parts[static_cast<std::size_t>(i)].link;
+        const int b = parts[static_cast<std::size_t>(j)].link;
+        if (a < 0 || a == b) continue;
+        if (b >= 0 && robot.description().allowed_collisions.count(std::minmax(a, b)) == 1) continue;
+        pairs.emplace_back(i, j);
+      }
+    }
   }
 };
 
@@ -113,17 +143,7 @@ CollisionBodies::CollisionBodies(const robot::RobotModel& robot, const robot::Sc
   for (const robot::SceneBody& body : scene.bodies) {
     for (const robot::Geometry& g : body.geometry) add(body.name, -1, g, body.X_WB * g.X_BG);
   }
-  const int count = static_cast<int>(data_->parts.size());
-  for (int i = 0; i < count; ++i) {
-    for (int j = i + 1; j < count; ++j) {
-      const Part& a = data_->parts[static_cast<std::size_t>(i)];
-      const Part& b = data_->parts[static_cast<std::size_t>(j)];
-      if (a.link < 0 || a.link == b.link) continue;
-      const std::pair<int, int> links = std::minmax(a.link, b.link);
-      if (b.link >= 0 && robot.description().allowed_collisions.count(links) == 1) continue;
-      data_->pairs.emplace_back(i, j);
-    }
-  }
+  data_->add_pairs();
 }
 
 CollisionBodies::~CollisionBodies() = default;
@@ -147,7 +167,7 @@ std::set<CollisionBodies::Pair> CollisionBodies::colliding() const {
     const Part& a = data_->parts[static_cast<std::size_t>(i)];
     const Part& b = data_->parts[static_cast<std::size_t>(j)];
     if (!a.object.getAABB().overlap(b.object.getAABB())) continue;
-    if (found.count({a.name, b.name}) == 0 && data_->collide(a, b)) found.emplace(a.name, b.name);
+    if (found.count({a.name, b.name}) == 0 && Data::collide(a, b)) found.emplace(a.name, b.name);
   }
   return found;
 }
@@ -172,18 +192,7 @@ double CollisionBodies::penetration(const std::string& link, const std::string& 
   for (Part& a : data_->parts) {
     if (a.name != link || a.link < 0) continue;
     for (const Part& b : data_->parts) {
-      if (b.name != body || b.link >= 0) continue;
-      if (!a.object.getAABB().overlap(b.object.getAABB()) || !data_->collide(a, b)) continue;
-      if (a.samples.cols() == 0) {
-        const auto points = robot::surface_samples({a.geometry.shape, Eigen::Isometry3d::Identity()}, 0.002);
-        a.samples.resize(3, static_cast<Eigen::Index>(points.size()));
-        for (std::size_t i = 0; i < points.size(); ++i) a.samples.col(static_cast<Eigen::Index>(i)) = points[i];
-      }
-      const Eigen::Isometry3d X_BA = b.X_WG().inverse() * a.X_WG();
-      for (const auto& point : a.samples.colwise()) depth = std::max(depth, b.solid->depth(X_BA * point));
-      const Eigen::Isometry3d X_AB = X_BA.inverse();
-      for (const auto& point : b.solid->mesh().vertices.colwise())
-        depth = std::max(depth, a.solid->depth(X_AB * point));
+      if (b.name == body && b.link < 0) depth = std::max(depth, Data::depth(a, b));
     }
   }
   return depth;

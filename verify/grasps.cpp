@@ -105,6 +105,7 @@ struct PlacedSolid {
 
 std::vector<PlacedSolid> place(const std::vector<robot::Geometry>& geometry, const Eigen::Isometry3d& X_OB) {
   std::vector<PlacedSolid> placed;
+  placed.reserve(geometry.size());
   for (const robot::Geometry& g : geometry) placed.push_back({Solid(g.shape), (X_OB * g.X_BG).inverse()});
   return placed;
 }

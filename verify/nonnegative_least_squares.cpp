@@ -29,7 +29,7 @@ Eigen::VectorXd solve_passive(const Eigen::MatrixXd& A, const Eigen::VectorXd& b
 Eigen::VectorXd feasible_solution(const Eigen::MatrixXd& A, const Eigen::VectorXd& b, Eigen::VectorXd x,
                                   std::vector<bool>& passive) {
   while (std::find(passive.begin(), passive.end(), true) != passive.end()) {
-    const Eigen::VectorXd z = solve_passive(A, b, passive);
+    Eigen::VectorXd z = solve_passive(A, b, passive);
     double alpha = 1.0;
     for (std::size_t i = 0; i < passive.size(); ++i) {
       const auto j = static_cast<Eigen::Index>(i);
