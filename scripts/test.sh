@@ -27,8 +27,8 @@ if [ "$part" != sanitize ]; then
 fi
 if [ "$part" != release ]; then
   # The install test and the long flows belong to the release build.
-  configure_and_build sanitize -DOPPONENS_WERROR=ON -DOPPONENS_TESTS=ON -DOPPONENS_EXAMPLES=OFF
-  # vm.overcommit and leak checks of third parties: see tests/support/sanitizer.supp
+  # No -Werror here: GCC 12's sanitizers raise false alarms of uninitialised use in the standard library.
+  configure_and_build sanitize -DOPPONENS_WERROR=OFF -DOPPONENS_TESTS=ON -DOPPONENS_EXAMPLES=OFF
   export LSAN_OPTIONS="suppressions=$ROOT/tests/support/lsan.supp:print_suppressions=0"
   run_tests sanitize -LE 'release_only'
 fi

@@ -16,13 +16,6 @@
 namespace opponens::verify {
 namespace {
 
-std::string number(double value) {
-  std::ostringstream text;
-  text.precision(4);
-  text << value;
-  return text.str();
-}
-
 bool in_friction_cone(const Eigen::Vector3d& force, const Eigen::Vector3d& n, double mu) {
   const double along = force.dot(n);
   return along > 0.0 && (1.0 + mu * mu) * along * along >= force.squaredNorm() * n.squaredNorm() * (1.0 - 1e-12);

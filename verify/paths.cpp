@@ -14,13 +14,6 @@ namespace {
 
 constexpr int kReportedCollisions = 10;
 
-std::string number(double value) {
-  std::ostringstream text;
-  text.precision(6);
-  text << value;
-  return text.str();
-}
-
 void check_configuration(const JointPath& path, Eigen::Index row, const Eigen::VectorXd& expected,
                          const std::string& name, double tolerance, Verdict& verdict) {
   if (expected.size() != path.waypoints.cols()) {

@@ -23,4 +23,7 @@ struct Verdict {
   }
 };
 
+/// A value as a reason states it: six digits.
+std::string number(double value);
+
 }  // namespace opponens::verify
