@@ -196,7 +196,9 @@ PathPart path_part(const std::string& id, const storage::Record& record) {
   run.seed = record.provenance.seed;
   run.result = storage::decode_plan_result(record);
   for (const auto& one : Json::parse(text_field(record, "human_likeness"))) {
-    run.human_likeness.push_back({optional_number(one.at("value")), one.at("reference")});
+    const std::string reference = one.at("reference");
+    const std::string of = one.at("of");
+    run.human_likeness.push_back({optional_number(one.at("value")), reference + ", " + of + " path"});
   }
   part.path.joint_names = run.result.path.joint_names;
   part.runs.push_back(std::move(run));

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The opponens authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 
@@ -53,7 +54,14 @@ Calibrations calibrate(const std::vector<Stored<Demonstration>>& motions, const 
 
 double hand_length(const Demonstration& motion, double otherwise) {
   const std::string text = label(motion, "hand_length");
-  return text.empty() ? otherwise : std::stod(text);
+  if (text.empty()) return otherwise;
+  double length = 0.0;
+  const auto end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, length);
+  if (error != std::errc() || stop != end || !(length > 0.0)) {
+    throw InputError(motion.id + ": label hand_length is '" + text + "', expected metres");
+  }
+  return length;
 }
 
 /// Human hands by length: a store rarely has more than a few wearers.

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "core/require.hpp"
 #include "verify/collision_bodies.hpp"
