@@ -41,7 +41,7 @@ class RealData(unittest.TestCase):
             self.assertEqual(len(analysis["transitions"]), 200)
             world = ("--store", store, "--robot", ROBOTS / "paper_lab_ur5_allegro_right_visual.yaml",
                      "--scene", laboratory_scene(folder))
-            grasps = must("grasp", *world, "--count", 2, env=shared)["grasps"]
+            grasps = must("grasp", *world, "--count", 2, "--max-trials", 320, env=shared)["grasps"]
             self.assertGreater(len(grasps), 0)
             plan = must("plan", *world, env=shared)
             self.assertEqual(plan["runs"][0]["status"], "solved")
