@@ -28,17 +28,18 @@ class Reach {
         kinematics_(world.robot),
         free_space_(world.robot, world.scene),
         closing_(world.robot, world.scene, hand_object_pairs(world)),
+        depth_(world.robot, world.scene, world.object, world.hand_links()),
         X_RO_(world.X_RO()) {}
 
   std::string operator()(Grasp& grasp) const {
-    return motion::reach(grasp, world_.robot, kinematics_, X_RO_, free_space_, closing_, kReachResolution);
+    return motion::reach(grasp, world_.robot, kinematics_, X_RO_, free_space_, closing_, kReachResolution, {&depth_});
   }
 
  private:
   /// A hand link may touch the object while the hand closes.
   static std::vector<robot::BodyPair> hand_object_pairs(const NamedWorld& world) {
     std::vector<robot::BodyPair> pairs;
-    for (const auto& link : world.hand.links()) pairs.emplace_back(link.name, world.object);
+    for (const auto& link : world.hand_links()) pairs.emplace_back(link, world.object);
     return pairs;
   }
 
@@ -46,6 +47,7 @@ class Reach {
   robot::ArmKinematics kinematics_;
   robot::CollisionChecker free_space_;
   robot::CollisionChecker closing_;
+  motion::ContactDepth depth_;
   Eigen::Isometry3d X_RO_;
 };
 

@@ -81,6 +81,7 @@ Planning::Planning(const PlanOptions& options, const NamedWorld& world, Query qu
       query_(std::move(query)),
       free_motion_(std::move(free_motion)),
       checker_(world.robot, world.scene),
+      depth_(world.robot, world.scene, world.object, world.hand_links()),
       space_(motion::make_world(checker_, world.robot, options.resolution)) {
   settings_.variant = options.planner == "synergy" ? motion::Variant::synergy : motion::Variant::rrtconnect;
   settings_.step = options.step;
@@ -111,7 +112,7 @@ void Planning::finish(Run& run) const {
   const Grasp& grasp = query_.grasps[query_.grasp_of_goal[goal]].value;
   const robot::CollisionChecker closing(robot, world_.scene, touching(grasp));
   auto whole = motion::append_closing_segment(shorter.path, query_.q_grasp[goal], robot.hand(),
-                                              motion::closing_world(closing, robot, options_.resolution));
+                                              motion::closing_world(closing, robot, options_.resolution, {&depth_}));
   if (!whole) {
     run.planned.status = PlanStatus::no_goals;
     run.planned.detail = whole.error().detail;

@@ -11,6 +11,7 @@
 #include "cli/json.hpp"
 #include "cli/stored.hpp"
 #include "cli/world.hpp"
+#include "motion/contact_depth.hpp"
 #include "motion/syn_planner.hpp"
 #include "robot/collision.hpp"
 
@@ -63,6 +64,7 @@ class Planning {
   Query query_;
   std::optional<analysis::LikenessReference> free_motion_;
   robot::CollisionChecker checker_;
+  motion::ContactDepth depth_;
   motion::World space_;
   motion::PlannerSettings settings_;
 };

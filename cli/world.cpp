@@ -32,6 +32,12 @@ NamedWorld load_world(const std::string& robot_file, const std::string& scene_fi
           std::move(files)};
 }
 
+std::vector<std::string> NamedWorld::hand_links() const {
+  std::vector<std::string> names;
+  for (const auto& link : hand.links()) names.push_back(link.name);
+  return names;
+}
+
 void require_same_joints(const SynergySet& synergies, const robot::RobotModel& hand) {
   if (synergies.joint_names == hand.joint_names()) return;
   std::string expected;

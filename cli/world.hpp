@@ -21,6 +21,8 @@ struct NamedWorld {
   Json parameters;                           ///< what ties stored objects to this world
   std::vector<std::filesystem::path> files;  ///< hashed into the provenance
 
+  std::vector<std::string> hand_links() const;
+
   Eigen::Isometry3d X_RO() const { return scene.X_WR.inverse() * scene.body(object).X_WB; }
 };
 

@@ -6,9 +6,7 @@
 #include <atomic>
 #include <cmath>
 #include <exception>
-#include <limits>
 #include <mutex>
-#include <numbers>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -20,18 +18,15 @@
 #include "grasp/grasp_check.hpp"
 #include "grasp/grasp_objective.hpp"
 #include "grasp/grasp_target.hpp"
+#include "grasp/hand_seed.hpp"
 #include "grasp/hand_surface.hpp"
 #include "grasp/quality.hpp"
 
 namespace opponens::grasp {
 namespace {
 
-constexpr int kBatch = 64;             // trials between two decisions to stop
-constexpr int kSeedAttempts = 20;      // poses drawn until the palm is clear
-constexpr int kSeeds = 8;              // drawn per trial; the best by the objective is optimised
-constexpr int kMaxEvaluations = 40;    // of the objective per trial
-constexpr double kMaxStandoff = 0.08;  // m between palm and object surface
-constexpr double kMaxTilt = 0.5;       // rad between approach direction and surface normal
+constexpr int kBatch = 64;           // trials between two decisions to stop
+constexpr int kMaxEvaluations = 40;  // of the objective per trial
 
 struct Trial {
   std::optional<Grasp> grasp;
@@ -52,72 +47,6 @@ struct Search {
   Eigen::VectorXd direction;
   HandCheckers checkers;
 };
-
-/// A direction at most kMaxTilt from d.
-Eigen::Vector3d tilt(const Eigen::Vector3d& d, Rng& rng) {
-  const Eigen::Vector3d any(rng.normal(), rng.normal(), rng.normal());
-  const Eigen::Vector3d side = (any - any.dot(d) * d).normalized();
-  const double angle = kMaxTilt * std::sqrt(rng.uniform());
-  return std::cos(angle) * d + std::sin(angle) * side;
-}
-
-bool palm_is_clear(const Search& search, const Eigen::Isometry3d& X_OH, const std::vector<Eigen::Isometry3d>& X_HL) {
-  for (const int link : search.surface.palm_links) {
-    const auto i = static_cast<std::size_t>(link);
-    for (const Eigen::Vector3d& p_L : search.surface.sparse[i]) {
-      const Eigen::Vector3d p_O = X_OH * X_HL[i] * p_L;
-      if (search.target.grid->value(p_O) < -0.005) return false;
-      if (search.target.obstacle_distance(p_O, 0.005).value < 0.002) return false;
-    }
-  }
-  return true;
-}
-
-/// Palm in front of a random surface point and facing it, random roll and standoff; fingers anywhere in the box.
-std::optional<HandSeed> draw_seed(const Search& search, Rng& rng) {
-  const SynergyBox& box = search.group.box;
-  for (int attempt = 0; attempt < kSeedAttempts; ++attempt) {
-    HandSeed seed;
-    seed.y.resize(box.half_width.size());
-    for (Eigen::Index i = 0; i < seed.y.size(); ++i) seed.y[i] = box.half_width[i] * rng.uniform(-1.0, 1.0);
-    const auto X_HL = search.hand.link_poses(search.hand.clip(analysis::configuration(box, seed.y)));
-    const SurfaceSeed point = sample_surface(search.target, rng);
-    const Eigen::Vector3d d = tilt(-point.n_O, rng);
-    const Eigen::AngleAxisd roll(2.0 * std::numbers::pi * rng.uniform(), d);
-    seed.X_OH.linear() =
-        roll.toRotationMatrix() * Eigen::Quaterniond::FromTwoVectors(search.surface.approach, d).toRotationMatrix();
-    // The middle between palm and fingers' contact points comes over the surface point, or the palm itself.
-    Eigen::Vector3d aim = search.surface.palm_center;
-    if (rng.uniform() < 0.5) {
-      Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-      const auto& points = search.hand.description().contact_points;
-      for (const auto& p : points) mean += X_HL[static_cast<std::size_t>(p.link)] * p.p_L / points.size();
-      const double ahead = (mean - aim).dot(search.surface.approach);
-      aim = mean - ahead * search.surface.approach;
-    }
-    const double standoff = kMaxStandoff * rng.uniform();
-    seed.X_OH.translation() = point.p_O - standoff * d - seed.X_OH.linear() * aim;
-    if (palm_is_clear(search, seed.X_OH, X_HL)) return seed;
-  }
-  return std::nullopt;
-}
-
-/// The most promising of a few seeds; nullopt when none was found.
-std::optional<HandSeed> best_seed(const Search& search, GraspObjective& objective, Rng& rng) {
-  std::optional<HandSeed> best;
-  double least = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < kSeeds; ++i) {
-    auto seed = draw_seed(search, rng);
-    if (!seed) break;  // twenty attempts failed: the next ones would too
-    Eigen::VectorXd x = Eigen::VectorXd::Zero(objective.size());
-    x.tail(seed->y.size()) = seed->y;
-    const double cost = objective.evaluate(*seed, x, nullptr);
-    if (cost >= least) continue;
-    least = cost;
-    best = std::move(seed);
-  }
-  return best;
-}
 
 QualityConvention convention_of(const Search& search) {
   QualityConvention convention;
@@ -148,7 +77,7 @@ Grasp describe(const Search& search, const HandPose& closed, const HandPose& pre
 Trial run_trial(const Search& search, std::int64_t index) {
   Rng rng = stream(search.seed, "grasp/" + search.group.name + "/" + std::to_string(index));
   GraspObjective objective(search.hand, search.surface, search.target, search.group.box);
-  const auto seed = best_seed(search, objective, rng);
+  const auto seed = best_seed({search.hand, search.surface, search.target, search.group.box}, objective, rng);
   if (!seed) return {std::nullopt, "no seed pose with a clear palm", objective.evaluations()};
   const HandSeed best = optimize_seed(objective, *seed, search.group.box.half_width, kMaxEvaluations);
   const auto rejected = [&](std::string reason) {

@@ -17,7 +17,6 @@ namespace opponens::grasp {
 namespace {
 
 constexpr double kOnPlane = 1e-11;    // of the scale: closer points are on a facet's plane
-constexpr double kTouching = 1e-10;   // of the scale: nearest point this close means the origin is in the set
 constexpr double kSuspicious = 1e-7;  // of the scale: gains below it are computed again from the facet's vertices
 constexpr int kMaxVertices = 20000;
 

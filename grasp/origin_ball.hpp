@@ -8,6 +8,9 @@
 
 namespace opponens::grasp {
 
+/// Of a set's scale: an origin this near to the boundary is on it.
+constexpr double kTouching = 1e-10;
+
 struct OriginBall {
   double radius;       ///< of the largest origin-centred ball in the set; negative: minus the distance to the set
   Vector6d direction;  ///< unit u with support h(u) = radius: the normal of the deciding facet, or of the separation

@@ -29,7 +29,10 @@ GraspQuality evaluate(const std::vector<Contact>& contacts, const QualityConvent
   OriginBall ball = largest_origin_ball(space);
   if (!ball.converged) {
     // Rounding left the growing polytope inconsistent: the whole hull answers instead, where it is small enough.
-    if (const auto hull = wrench_hull(space.points(kMaxHullPoints))) ball.radius = hull->least_offset;
+    if (const auto hull = wrench_hull(space.points(kMaxHullPoints))) {
+      ball.inside = hull->least_offset > kTouching * space.scale();
+      ball.radius = ball.inside ? hull->least_offset : 0.0;
+    }
   }
   quality.state = ball.inside ? ClosureState::force_closure : ClosureState::not_force_closure;
   quality.epsilon = ball.radius;

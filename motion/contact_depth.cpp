@@ -5,11 +5,19 @@
 #include <algorithm>
 #include <cstddef>
 #include <memory>
+#include <utility>
+
+#include <Eigen/Geometry>
 
 #include "core/require.hpp"
 #include "robot/mesh.hpp"
 
 namespace opponens::motion {
+namespace {
+
+constexpr std::size_t kLeafPoints = 8;
+
+}  // namespace
 
 ContactDepth::ContactDepth(const robot::RobotModel& robot, const robot::Scene& scene, const std::string& object,
                            const std::vector<std::string>& links, double spacing)
@@ -31,12 +39,46 @@ ContactDepth::ContactDepth(const robot::RobotModel& robot, const robot::Scene& s
       points.insert(points.end(), samples.begin(), samples.end());
     }
     if (points.empty()) continue;
-    LinkSurface surface{link, Eigen::Matrix3Xd(3, static_cast<Eigen::Index>(points.size())), {}, 0.0};
-    for (std::size_t i = 0; i < points.size(); ++i) surface.points.col(static_cast<Eigen::Index>(i)) = points[i];
-    surface.center = 0.5 * (surface.points.rowwise().minCoeff() + surface.points.rowwise().maxCoeff());
-    surface.radius = (surface.points.colwise() - surface.center).colwise().norm().maxCoeff();
-    links_.push_back(std::move(surface));
+    links_.push_back({link, std::move(points), {}});
+    links_.back().enclose(0, links_.back().points.size());
   }
+}
+
+void ContactDepth::LinkSurface::enclose(std::size_t begin, std::size_t end) {
+  const auto first = points.begin() + static_cast<std::ptrdiff_t>(begin);
+  const auto last = points.begin() + static_cast<std::ptrdiff_t>(end);
+  Eigen::AlignedBox3d box;
+  std::for_each(first, last, [&](const Eigen::Vector3d& p) { box.extend(p); });
+  Ball ball{box.center(), 0.0, begin, end, 0, end - begin <= kLeafPoints};
+  std::for_each(first, last,
+                [&](const Eigen::Vector3d& p) { ball.radius = std::max(ball.radius, (p - ball.center).norm()); });
+  const std::size_t index = balls.size();
+  balls.push_back(ball);
+  if (!ball.leaf) {
+    Eigen::Index axis = 0;
+    box.sizes().maxCoeff(&axis);
+    const std::size_t middle = begin + (end - begin) / 2;
+    std::nth_element(first, points.begin() + static_cast<std::ptrdiff_t>(middle), last,
+                     [axis](const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return a[axis] < b[axis]; });
+    enclose(begin, middle);
+    enclose(middle, end);
+  }
+  balls[index].next = balls.size();
+}
+
+double ContactDepth::deepest(const LinkSurface& link, const Solid& solid, const Eigen::Isometry3d& X_GL, double depth) {
+  for (std::size_t i = 0; i < link.balls.size();) {
+    const Ball& ball = link.balls[i];
+    // A signed distance changes by no more than the way: no point of a ball this far out is deeper.
+    const bool may_be_deeper = solid.distance.signed_distance(X_GL * ball.center) < ball.radius - depth;
+    if (may_be_deeper && ball.leaf) {
+      for (std::size_t p = ball.begin; p < ball.end; ++p) {
+        depth = std::max(depth, -solid.distance.signed_distance(X_GL * link.points[p]));
+      }
+    }
+    i = may_be_deeper && !ball.leaf ? i + 1 : ball.next;
+  }
+  return depth;
 }
 
 double ContactDepth::operator()(const Eigen::VectorXd& q) const {
@@ -44,11 +86,7 @@ double ContactDepth::operator()(const Eigen::VectorXd& q) const {
   double depth = 0.0;
   for (const LinkSurface& link : links_) {
     for (const Solid& solid : solids_) {
-      const Eigen::Isometry3d X_GL = solid.X_GR * X_RL[static_cast<std::size_t>(link.link)];
-      if (solid.distance.signed_distance(X_GL * link.center) > link.radius) continue;
-      for (Eigen::Index i = 0; i < link.points.cols(); ++i) {
-        depth = std::max(depth, -solid.distance.signed_distance(X_GL * link.points.col(i)));
-      }
+      depth = deepest(link, solid, solid.X_GR * X_RL[static_cast<std::size_t>(link.link)], depth);
     }
   }
   return depth;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -24,20 +25,31 @@ class ContactDepth {
   ContactDepth(const robot::RobotModel& robot, const robot::Scene& scene, const std::string& object,
                const std::vector<std::string>& links, double spacing = 0.003);
 
-  /// m, >= 0. q: [d] rad. Cost: one tree query per surface point whose link is near the object.
+  /// m, >= 0. q: [d] rad.
   double operator()(const Eigen::VectorXd& q) const;
 
  private:
+  /// A ball around some of a link's surface points. Children follow their parent.
+  struct Ball {
+    Eigen::Vector3d center;  ///< m, in the link
+    double radius;           ///< m
+    std::size_t begin, end;  ///< its points
+    std::size_t next;        ///< the first ball after those inside this one
+    bool leaf;
+  };
   struct LinkSurface {
     int link;
-    Eigen::Matrix3Xd points;  ///< m, in the link
-    Eigen::Vector3d center;   ///< m, of a sphere around the points, in the link
-    double radius;            ///< m
+    std::vector<Eigen::Vector3d> points;  ///< m, in the link
+    std::vector<Ball> balls;
+    void enclose(std::size_t begin, std::size_t end);
   };
   struct Solid {
     robot::MeshDistance distance;
     Eigen::Isometry3d X_GR;  ///< robot root in the geometry's frame
   };
+  /// The greater of depth and what the points of the link reach in the solid.
+  static double deepest(const LinkSurface& link, const Solid& solid, const Eigen::Isometry3d& X_GL, double depth);
+
   const robot::RobotModel* robot_;
   std::vector<LinkSurface> links_;
   std::vector<Solid> solids_;

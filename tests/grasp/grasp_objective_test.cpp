@@ -6,6 +6,7 @@
 
 #include "allegro.hpp"
 #include "core/rng.hpp"
+#include "grasp/hand_seed.hpp"
 #include "random_contacts.hpp"
 
 namespace opponens::grasp {
@@ -115,6 +116,38 @@ TEST(GraspObjective, OptimizationLowersTheCostInsideTheBox) {
   there.tail(3) = best.y;
   EXPECT_LT(objective.evaluate(best, there, nullptr), 0.8 * before);
   EXPECT_LE(objective.evaluations(), 70);
+}
+
+TEST(HandSeed, FacesTheSurfaceClearOfTheTableAndTheBestCostsLeast) {
+  const test::Synergies synergies = test::power_synergies();
+  const GraspTarget target = make_target(test::with_table(test::scene_of(robot::Sphere{0.05}), -0.05), "object", 2);
+  const HandSurface surface = hand_surface(test::allegro(), synergies.group.box.center);
+  const SeedSpace space{test::allegro(), surface, target, synergies.group.box};
+  GraspObjective objective(test::allegro(), surface, target, synergies.group.box);
+  Rng rng = stream(53, "seed");
+  const auto cost = [&](const HandSeed& seed) {
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(objective.size());
+    x.tail(3) = seed.y;
+    return objective.evaluate(seed, x, nullptr);
+  };
+  double mean = 0.0;
+  double mean_best = 0.0;
+  for (int i = 0; i < 50; ++i) {
+    const auto seed = draw_seed(space, rng);
+    ASSERT_TRUE(seed.has_value());
+    const Eigen::Vector3d palm = seed->X_OH * surface.palm_center;
+    EXPECT_GT(target.obstacle_distance(palm, 1.0).value, 0.0);
+    EXPECT_LT((seed->X_OH.linear() * surface.approach).dot(palm.normalized()), 0.2);  // looks towards the ball
+    EXPECT_TRUE((seed->y.cwiseAbs().array() <= synergies.group.box.half_width.array()).all());
+    mean += cost(*seed) / 50.0;
+    mean_best += cost(*best_seed(space, objective, rng)) / 50.0;
+  }
+  EXPECT_LT(mean_best, mean);
+  robot::Scene buried = test::scene_of(robot::Sphere{0.05});
+  buried.bodies.push_back(
+      {"sand", Eigen::Isometry3d::Identity(), {{robot::Sphere{1.0}, Eigen::Isometry3d::Identity()}}});
+  const GraspTarget unreachable = make_target(buried, "object", 2);
+  EXPECT_FALSE(draw_seed({test::allegro(), surface, unreachable, synergies.group.box}, rng).has_value());
 }
 
 }  // namespace

@@ -17,6 +17,8 @@
 #include "motion/syn_planner.hpp"
 #include "motion/timing.hpp"
 #include "robot/load_robot.hpp"
+#include "robot/mesh.hpp"
+#include "robot/mesh_distance.hpp"
 
 namespace opponens::motion {
 namespace {
@@ -148,6 +150,33 @@ TEST_F(RobotWorld, ContactDepthOfAFingertipInTheBottle) {
   const ContactDepth touching(robot, moved, "bottle", {robot.links()[static_cast<std::size_t>(tip.link)].name});
   EXPECT_GT(touching(clear), 0.002);
   EXPECT_FALSE(robot::CollisionChecker(robot, moved).free(clear));
+}
+
+TEST_F(RobotWorld, ContactDepthIsThatOfTheDeepestSurfacePoint) {
+  const auto& tip = robot.description().tips.front();
+  const robot::Link& link = robot.links()[static_cast<std::size_t>(tip.link)];
+  Rng rng = stream(11, "depth");
+  int deep = 0;
+  for (int trial = 0; trial < 40; ++trial) {
+    const Eigen::VectorXd q = start() + 0.05 * Eigen::VectorXd::NullaryExpr(robot.dof(), [&] { return rng.normal(); });
+    const Eigen::Isometry3d X_WL = scene.X_WR * robot.link_poses(q)[static_cast<std::size_t>(tip.link)];
+    const Eigen::Vector3d aside(0.05 * rng.normal(), 0.05 * rng.normal(), 0.05 * rng.normal());
+    robot::Scene ball = scene;
+    ball.bodies = {
+        {"ball", Eigen::Isometry3d(Eigen::Translation3d(X_WL * tip.p_L + aside)), {{robot::Sphere{0.04}, {}}}}};
+    ball.bodies[0].geometry[0].X_BG.setIdentity();
+    const auto mesh = std::make_shared<const robot::TriangleMesh>(robot::triangulate(robot::Sphere{0.04}, 64));
+    const robot::MeshDistance surface(mesh);
+    double expected = 0.0;
+    for (const auto& geometry : link.collision) {
+      for (const Eigen::Vector3d& p_L : robot::surface_samples(geometry, 0.003)) {
+        expected = std::max(expected, -surface.signed_distance(ball.bodies[0].X_WB.inverse() * X_WL * p_L));
+      }
+    }
+    EXPECT_NEAR(ContactDepth(robot, ball, "ball", {link.name})(q), expected, 1e-12);
+    deep += expected > 0.001 ? 1 : 0;
+  }
+  EXPECT_GT(deep, 5);
 }
 
 class RobotPlan : public RobotWorld, public ::testing::WithParamInterface<Variant> {};
