@@ -51,6 +51,7 @@ void count_motion(const Demonstration& motion, const std::string& group_by,
                        ? Interval{seconds, seconds}
                        : Interval{std::min(group.duration.low, seconds), std::max(group.duration.high, seconds)};
   group.name = name;
+  group.free_motion = is_free_motion(motion);
   group.mean_duration = (group.mean_duration * group.recordings + seconds) / (group.recordings + 1);
   group.recordings += 1;
   group.samples += static_cast<int>(motion.time.size());

@@ -34,6 +34,7 @@ struct RecordingGroup {
   int samples = 0;
   double mean_duration = 0.0;  ///< s
   Interval duration;           ///< s, shortest and longest
+  bool free_motion = false;    ///< free finger movements, which are no group of grasps
 };
 
 struct DemonstrationPart {
@@ -51,7 +52,7 @@ struct TransitionCurves {
   std::string demonstration;            ///< id
   Eigen::VectorXd time;                 ///< [S] s
   Eigen::VectorXd log_likeness;         ///< [S] log L(Q-, Q+), Eq. (1)
-  Eigen::VectorXd changepoint_cost;     ///< [S] n1 log|S1 + rI| + n2 log|S2 + rI|; empty: not computed
+  Eigen::VectorXd changepoint_cost;     ///< [S] n1 log|S1 + r^2 I| + n2 log|S2 + r^2 I|; empty: not computed
   std::optional<double> likeness_time;  ///< s, minimum found
   std::optional<double> changepoint_time;
   std::optional<double> known_time;  ///< s, ground truth of a simulated movement

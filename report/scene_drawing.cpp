@@ -12,7 +12,7 @@
 namespace opponens::report {
 namespace {
 
-constexpr double kLargestShown = 1.0;  // m, extent of a body that a picture zooms out for
+constexpr double kLargestShown = 0.5;  // m, extent of a body that a picture zooms out for
 
 struct Bounds {
   Eigen::Array3d low = Eigen::Array3d::Constant(std::numeric_limits<double>::infinity());

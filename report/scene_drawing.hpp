@@ -21,7 +21,7 @@ struct DrawnScene {
   std::vector<Eigen::Vector3d> surroundings;  ///< m, world: corners of the bodies that a picture should show
 };
 
-/// object: the body painted as the object; empty: none. The scene's support has its own paint. Bodies larger than 1 m
+/// object: the body painted as the object; empty: none. The scene's support has its own paint. Bodies larger than 0.5 m
 /// (floors, furniture) are drawn, but the picture is not zoomed out for them.
 DrawnScene drawn_scene(const robot::RobotModel& robot, const robot::Scene& scene, const std::string& object,
                        int max_triangles);

@@ -72,9 +72,10 @@ Markup example_curves(const TransitionCurves& curves) {
                               "log likeness", curves.likeness_time, 0)),
              "Likeness, Eq. (1): log of the overlap of the Gaussians before and after the split."));
   if (curves.changepoint_cost.size() > 0) {
-    plots.push_back(figure(render(cost_plot(curves, curves.changepoint_cost, "Change-point cost against the split time",
-                                            "change-point cost", curves.changepoint_time, 1)),
-                           "Change point: n1 log|S1 + rI| + n2 log|S2 + rI|, the best split into two Gaussians."));
+    plots.push_back(
+        figure(render(cost_plot(curves, curves.changepoint_cost, "Change-point cost against the split time",
+                                "change-point cost", curves.changepoint_time, 1)),
+               "Change point: n1 log|S1 + r\u00B2I| + n2 log|S2 + r\u00B2I|, the best split into two Gaussians."));
   }
   out += row_of(plots);
   return out;

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <map>
+#include <utility>
 
 #include "core/require.hpp"
 #include "report/hand_drawing.hpp"
@@ -52,6 +55,8 @@ std::string optional_number(const std::optional<double>& value) {
   return value ? significant(*value) : std::string("none");
 }
 
+std::string posture_words(const Grasp& grasp) { return grasp.synergy_grasp ? "along the synergies" : "free"; }
+
 /// The hand's configuration and the object's body, when the input has what a picture needs.
 const robot::SceneBody* drawable_object(const ReportInput& input) {
   if (!input.hand || !input.scene) return nullptr;
@@ -85,17 +90,16 @@ Markup numbers(const GraspItem& item) {
               escape(grasp.group), " \u00B7 ", badge(quality.force_closure(), words(quality.state)).html});
   if (item.verified)
     html += concat({" \u00B7 ", badge(*item.verified, *item.verified ? "verified" : "verification failed").html});
-  html +=
-      concat({"<br>\u03B5 ", optional_number(quality.epsilon), " \u00B7 l* ", optional_number(quality.min_weight),
-              " \u00B7 slack ", significant(grasp.slack.norm()), " rad (",
-              grasp.synergy_grasp ? "along the synergies" : "free", ") \u00B7 ", std::to_string(grasp.contacts.size()),
-              " contacts \u00B7 ", std::to_string(grasp.arm_solutions.size()), " arm solutions</p>\n"});
+  html += concat({"<br>\u03B5 ", optional_number(quality.epsilon), " \u00B7 l* ", optional_number(quality.min_weight),
+                  " \u00B7 slack ", significant(grasp.slack.norm()), " rad (", posture_words(grasp), ") \u00B7 ",
+                  std::to_string(grasp.contacts.size()), " contacts \u00B7 ",
+                  std::to_string(grasp.arm_solutions.size()), " arm solutions</p>\n"});
   return {html};
 }
 
 Markup grasp_table(const GraspPart& part) {
-  Table table("All grasps", {"grasp", "group", "state", "\u03B5", "l*", "slack (rad)", "contacts", "touching links",
-                             "arm solutions", "verified"});
+  Table table("All grasps", {"grasp", "group", "state", "\u03B5", "l*", "slack (rad)", "posture", "contacts",
+                             "touching links", "arm solutions", "verified"});
   for (const auto& item : part.items) {
     const auto& grasp = item.grasp;
     std::vector<std::string> links;
@@ -104,18 +108,48 @@ Markup grasp_table(const GraspPart& part) {
     links.erase(std::unique(links.begin(), links.end()), links.end());
     table.row({identifier(item.id), text(grasp.group), text(words(grasp.quality.state)),
                text(optional_number(grasp.quality.epsilon)), text(optional_number(grasp.quality.min_weight)),
-               text(significant(grasp.slack.norm())), text(std::to_string(grasp.contacts.size())),
-               text(std::to_string(links.size())), text(std::to_string(grasp.arm_solutions.size())),
+               text(significant(grasp.slack.norm())), text(posture_words(grasp)),
+               text(std::to_string(grasp.contacts.size())), text(std::to_string(links.size())),
+               text(std::to_string(grasp.arm_solutions.size())),
                item.verified ? badge(*item.verified, *item.verified ? "yes" : "no") : text("not checked")});
   }
   return table.str();
 }
 
+/// Trials rejected for one reason, with the pair of bodies that is named most often behind it.
+struct Rejection {
+  std::string reason;
+  std::int64_t trials = 0;
+  std::string pair;
+  std::int64_t of_pair = 0;
+};
+
+/// "reason: pair" counted by reason, the most frequent first.
+std::vector<Rejection> by_reason(const std::map<std::string, std::int64_t>& rejected) {
+  std::map<std::string, Rejection> grouped;
+  for (const auto& [words, count] : rejected) {
+    const std::size_t colon = words.find(": ");
+    auto& entry = grouped[words.substr(0, colon)];
+    entry.reason = words.substr(0, colon);
+    entry.trials += count;
+    if (colon == std::string::npos || count <= entry.of_pair) continue;
+    entry.pair = words.substr(colon + 2);
+    entry.of_pair = count;
+  }
+  std::vector<Rejection> sorted;
+  for (auto& [reason, entry] : grouped) sorted.push_back(std::move(entry));
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const Rejection& a, const Rejection& b) { return a.trials > b.trials; });
+  return sorted;
+}
+
 Markup rejected_table(const GraspPart& part) {
   if (part.rejected.empty()) return {};
-  Table table(concat({"What became of ", grouped(part.trials), " trials of the search"}),
-              {"reason for rejection", "trials"});
-  for (const auto& [reason, count] : part.rejected) table.row({text(reason), text(grouped(count))});
+  Table table(concat({"Why trials were rejected, of ", grouped(part.trials)}), {"reason", "trials", "most often"});
+  for (const auto& one : by_reason(part.rejected)) {
+    table.row({text(one.reason), text(grouped(one.trials)),
+               text(one.pair.empty() ? "" : concat({one.pair, " (", grouped(one.of_pair), ")"}))});
+  }
   return table.str();
 }
 
@@ -129,8 +163,14 @@ Markup conventions(const GraspPart& part) {
   Markup out;
   for (const auto& convention : seen) {
     out += note(concat({"Convention of \u03B5 and l*: ", convention,
-                        ". \u03B5 is the radius of the largest ball around the origin inside the wrench hull."}));
+                        ". \u03B5 is the radius of the largest ball around the origin inside the wrench hull; l* is "
+                        "the largest weight that every wrench can keep while all balance each other (of at most 1 / "
+                        "their number). Both are positive for force closure."}));
   }
+  out += note(
+      "Slack: how far fitting the fingers to the object took the posture away from the synergies. Up to the stated "
+      "bound "
+      "the grasp counts as one along the synergies, beyond it as free.");
   return out;
 }
 

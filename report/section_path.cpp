@@ -124,16 +124,26 @@ Markup run_table(const PathPart& part) {
   return out;
 }
 
-/// Row after which `share` of the joint-space length from `first` to `last` has been covered.
-Eigen::Index row_at(const Eigen::MatrixXd& path, Eigen::Index last, double share) {
+/// A place on the path: row + fraction of the way to the next one.
+double place_at(const Eigen::MatrixXd& path, Eigen::Index last, double share) {
   std::vector<double> covered{0.0};
   for (Eigen::Index i = 1; i <= last; ++i) covered.push_back(covered.back() + (path.row(i) - path.row(i - 1)).norm());
-  const auto found = std::lower_bound(covered.begin(), covered.end(), share * covered.back());
-  return std::min<Eigen::Index>(last, found - covered.begin());
+  const double wanted = share * covered.back();
+  const auto found = std::upper_bound(covered.begin(), covered.end(), wanted);
+  if (found == covered.end()) return static_cast<double>(last);
+  const auto next = found - covered.begin();
+  return static_cast<double>(next - 1) + (wanted - *(found - 1)) / (*found - *(found - 1));
+}
+
+/// The row at a place, between two stored ones.
+Eigen::VectorXd at_place(const Eigen::MatrixXd& rows, double place) {
+  const auto row = static_cast<Eigen::Index>(place);
+  const Eigen::Index next = std::min(row + 1, rows.rows() - 1);
+  return rows.row(row).transpose() + (place - static_cast<double>(row)) * (rows.row(next) - rows.row(row)).transpose();
 }
 
 struct Snapshot {
-  Eigen::Index row;
+  double place;
   std::string name;
 };
 
@@ -141,20 +151,20 @@ std::vector<Snapshot> snapshots(const PathPart& part) {
   const Eigen::Index last = part.path.waypoints.rows() - 1;
   const Eigen::Index middle_end = part.pregrasp > 0 ? part.pregrasp : last;
   const int between = std::max(1, part.pictures - (part.pregrasp > 0 ? 3 : 2));
-  std::vector<Snapshot> shots{{0, "start"}};
+  std::vector<Snapshot> shots{{0.0, "start"}};
   for (int i = 1; i <= between; ++i) {
     const double share = static_cast<double>(i) / (between + 1);
-    shots.push_back({row_at(part.path.waypoints, middle_end, share), concat({percent(share, 0), " of the way"})});
+    const std::string end = part.pregrasp > 0 ? " of the way to the pre-grasp" : " of the way";
+    shots.push_back({place_at(part.path.waypoints, middle_end, share), percent(share, 0) + end});
   }
-  if (part.pregrasp > 0) shots.push_back({part.pregrasp, "pre-grasp"});
-  shots.push_back({last, part.pregrasp > 0 ? "grasp" : "end"});
+  if (part.pregrasp > 0) shots.push_back({static_cast<double>(part.pregrasp), "pre-grasp"});
+  shots.push_back({static_cast<double>(last), part.pregrasp > 0 ? "grasp" : "end"});
   return shots;
 }
 
 std::string snapshot_caption(const PathPart& part, const Snapshot& shot) {
-  std::string caption = shot.name;
-  if (part.times.size() > 0) caption += concat({", t = ", fixed(part.times[shot.row], 2), " s"});
-  return caption;
+  if (part.times.size() == 0) return shot.name;
+  return concat({shot.name, ", t = ", fixed(at_place(part.times, shot.place)[0], 2), " s"});
 }
 
 /// Where the palm passes, in the world; at most about 120 points.
@@ -195,7 +205,9 @@ Markup snapshot_rows(const ReportInput& input) {
   const auto shots = snapshots(part);
   std::vector<Eigen::VectorXd> shown;
   shown.reserve(shots.size());
-  for (const auto& shot : shots) shown.push_back(all[static_cast<std::size_t>(shot.row)]);
+  for (const auto& shot : shots) {
+    shown.push_back(by_name(robot, part.path.joint_names, at_place(part.path.waypoints, shot.place), rest));
+  }
   const auto trail = palm_trail(robot, scene, all);
   const DrawnScene drawn = drawn_scene(robot, scene, object, 5000);
   const std::vector<CameraSetting> cameras{
@@ -245,6 +257,11 @@ Markup curves(const ReportInput& input) {
   if (split > 0) out += joint_charts(arm_names, axis, label, part.path.waypoints.leftCols(split), marks, 3);
   out += joint_charts(hand_names, axis, label,
                       part.path.waypoints.rightCols(static_cast<Eigen::Index>(hand_names.size())), marks, 4);
+  if (timed) {
+    out += note(
+        "Straight lines join the waypoints. The motion starts and ends at rest, with a ramp of speed between the "
+        "waypoints that is not drawn, and passes the corners at speed: a controller has to smooth them.");
+  }
   return out;
 }
 

@@ -21,7 +21,8 @@ using Key = std::tuple<int, std::string, std::string, std::string, std::uint64_t
 
 /// The chain is read from the path back to the recordings.
 int rank(const std::string& kind) {
-  constexpr std::array<std::string_view, 4> kOrder{"path", "grasp", "synergy_set", "demonstration"};
+  constexpr std::array<std::string_view, 5> kOrder{"path", "grasp", "synergy_set", "hand_demonstration",
+                                                   "demonstration"};
   const auto found = std::find(kOrder.begin(), kOrder.end(), kind);
   return static_cast<int>(found - kOrder.begin());
 }
@@ -45,7 +46,7 @@ Markup id_list(const std::vector<const ProvenanceItem*>& items) {
   Markup list{"<p>"};
   for (const auto* item : items) {
     list += identifier(item->id);
-    if (!item->name.empty()) list += text(concat({" ", item->name}));
+    if (!item->name.empty()) list += text(concat({" (", item->name, ")"}));
     list.html += item == items.back() ? "" : ", ";
   }
   list.html += "</p>\n";
@@ -75,8 +76,8 @@ Markup inputs_of(const std::vector<const ProvenanceItem*>& items) {
   if (!files.empty()) {
     Table table("Outside files", {"file", "SHA-256"});
     for (const auto& [file, hash] : files) table.row({text(file), identifier(hash)});
-    out += files.size() <= kShown ? table.str()
-                                  : details(concat({std::to_string(files.size()), " outside files"}), table.str());
+    out += details(concat({std::to_string(files.size()), files.size() == 1 ? " outside file" : " outside files"}),
+                   table.str());
   }
   return out;
 }
@@ -104,9 +105,7 @@ Markup provenance_section(const ReportInput& input) {
     out.html += concat({"<p>command <code>", escape(first.command), "</code> \u00B7 seed ", std::to_string(first.seed),
                         " \u00B7 version ", escape(first.program_version), "</p>\n"});
     if (!first.parameters.empty()) {
-      const Markup parameters{concat({"<pre>", escape(first.parameters), "</pre>\n"})};
-      constexpr std::size_t kLong = 400;
-      out += first.parameters.size() < kLong ? parameters : details("parameters", parameters);
+      out += details("parameters", Markup{concat({"<pre>", escape(first.parameters), "</pre>\n"})});
     }
     out += inputs_of(batch.items);
     out.html += "</div>\n";
@@ -131,10 +130,9 @@ Markup verification_section(const ReportInput& input) {
     out += paragraph(concat({"Worst clearance along all paths: ", fixed(1000.0 * *part.worst_clearance, 2), " mm",
                              part.worst_pair.empty() ? "" : " between ", part.worst_pair, "."}));
   }
-  Table table("Verdicts", {"object", "kind", "verdict", "reason"});
+  Table table("Failures", {"object", "kind", "reason"});
   for (const auto& verdict : part.verdicts) {
-    table.row({identifier(verdict.id), text(verdict.kind), badge(verdict.passed, verdict.passed ? "passed" : "failed"),
-               text(verdict.reason)});
+    if (!verdict.passed) table.row({identifier(verdict.id), text(verdict.kind), text(verdict.reason)});
   }
   if (!table.empty()) out += table.str();
   return out;

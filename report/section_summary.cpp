@@ -22,6 +22,13 @@ std::string recordings_words(const DemonstrationPart& part) {
   return concat({grouped(recordings), " with ", grouped(samples), " samples, ", origin});
 }
 
+std::string group_words(const DemonstrationPart& part) {
+  const auto free = std::count_if(part.groups.begin(), part.groups.end(),
+                                  [](const RecordingGroup& group) { return group.free_motion; });
+  return concat({std::to_string(static_cast<std::int64_t>(part.groups.size()) - free), " by ", part.grouped_by,
+                 free > 0 ? ", and free finger motions" : ""});
+}
+
 std::string synergy_words(const SynergyPart& part) {
   std::string words;
   for (const auto& item : part.groups) {
@@ -35,8 +42,11 @@ std::string synergy_words(const SynergyPart& part) {
 std::string grasp_words(const GraspPart& part) {
   const auto closed = std::count_if(part.items.begin(), part.items.end(),
                                     [](const GraspItem& item) { return item.grasp.quality.force_closure(); });
-  std::string words =
-      concat({std::to_string(part.items.size()), " of ", part.object, ", ", std::to_string(closed), " force closure"});
+  const auto along = std::count_if(part.items.begin(), part.items.end(),
+                                   [](const GraspItem& item) { return item.grasp.synergy_grasp; });
+  std::string words = concat({std::to_string(part.items.size()), " of ", part.object, ", ", std::to_string(closed),
+                              " force closure, ", std::to_string(along), " along the synergies and ",
+                              std::to_string(static_cast<std::int64_t>(part.items.size()) - along), " free"});
   std::optional<double> best;
   for (const auto& item : part.items) {
     const auto& epsilon = item.grasp.quality.epsilon;
@@ -79,9 +89,7 @@ Markup summary_section(const ReportInput& input) {
   const std::string missing = "not available";
   Table table("Key numbers", {"what", "result"});
   table.row({text("recordings"), text(input.demonstrations ? recordings_words(*input.demonstrations) : missing)});
-  table.row({text("groups"), text(input.demonstrations ? concat({std::to_string(input.demonstrations->groups.size()),
-                                                                 " by ", input.demonstrations->grouped_by})
-                                                       : missing)});
+  table.row({text("groups"), text(input.demonstrations ? group_words(*input.demonstrations) : missing)});
   table.row({text("synergies kept (k)"), text(input.synergies ? synergy_words(*input.synergies) : missing)});
   table.row({text("grasps"), text(input.grasps ? grasp_words(*input.grasps) : missing)});
   table.row({text("path length"), text(input.path ? path_words(*input.path) : missing)});

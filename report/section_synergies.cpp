@@ -169,6 +169,15 @@ double drawn_half_width(const SynergyGroup& group, Eigen::Index i) {
                                          : 2.0 * std::sqrt(std::max(0.0, group.basis.variance[i]));
 }
 
+/// The hand at q as far as its limits let it, with the words that tell where they do not.
+Posture posture(const robot::RobotModel& hand, const std::vector<std::string>& joint_names, const Eigen::VectorXd& q,
+                const std::string& name) {
+  const Eigen::VectorXd wanted = by_name(hand, joint_names, q, rest_configuration(hand));
+  const Eigen::VectorXd reached = hand.clip(wanted);
+  const double clipped = (wanted - reached).cwiseAbs().maxCoeff();
+  return {reached, clipped < 0.005 ? name : concat({name, ", clipped by ", fixed(clipped, 2)})};
+}
+
 Markup draw_synergy(const robot::RobotModel& hand, const RobotFacets& facets, const SynergyPart& part,
                     const SynergyItem& item, Eigen::Index i) {
   const auto& group = item.group;
@@ -178,8 +187,7 @@ Markup draw_synergy(const robot::RobotModel& hand, const RobotFacets& facets, co
   for (const int side : {-1, 0, 1}) {
     const Eigen::VectorXd x = group.basis.mean + side * h * group.basis.axes.col(i);
     const Eigen::VectorXd q = group.box.scale.cwiseProduct(x);
-    const std::string words = side == 0 ? "mean" : side < 0 ? "mean - h" : "mean + h";
-    postures.push_back({by_name(hand, part.joint_names, q, rest_configuration(hand)), words});
+    postures.push_back(posture(hand, part.joint_names, q, side == 0 ? "mean" : side < 0 ? "mean - h" : "mean + h"));
   }
   const double total = group.basis.variance.sum();
   const double share = total > 0.0 ? group.basis.variance[i] / total : 0.0;
@@ -223,7 +231,9 @@ Markup synergy_drawing_section(const ReportInput& input) {
   const RobotFacets facets = robot_facets(*input.hand, 2400);
   Markup out = paragraph(
       "The robot hand at the mean of each group and at both ends of its box along the first two synergies, clipped to "
-      "the joint limits. h is the half width of the box.");
+      "the joint limits where the box reaches beyond them (the words say by how much at most, rad). h is the half "
+      "width "
+      "of the box: its ends are not postures that were recorded.");
   for (const auto& item : input.synergies->groups) {
     out += subheading(item.group.name == "pre-grasp"
                           ? "Pre-grasp"

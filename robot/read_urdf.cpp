@@ -137,7 +137,7 @@ Joint joint_of(const urdf::Joint& source, const std::filesystem::path& file, std
   const std::string element = "joint '" + source.name + "'";
   Joint joint;
   joint.name = source.name;
-  joint.X_PJ = pose_of(source.parent_to_joint_origin_transform, file, element);
+  joint.X_PJ = urdf_pose(source.parent_to_joint_origin_transform, file, element);
   if (source.type == urdf::Joint::FIXED) return joint;
   const bool continuous = source.type == urdf::Joint::CONTINUOUS;
   if (source.type != urdf::Joint::REVOLUTE && source.type != urdf::Joint::PRISMATIC && !continuous) {

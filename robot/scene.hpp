@@ -21,9 +21,9 @@ struct Scene {
   std::string name;
   Eigen::Isometry3d X_WR = Eigen::Isometry3d::Identity();  ///< robot root in the world
   std::vector<SceneBody> bodies;
-  std::string object;    ///< default object to grasp; may be empty
-  std::string support;   ///< body the object stands on; may be empty
-  Eigen::VectorXd start; ///< [d] rad start configuration by the robot's joint order; empty: not given
+  std::string object;                     ///< default object to grasp; may be empty
+  std::string support;                    ///< body the object stands on; may be empty
+  Eigen::VectorXd start;                  ///< [d] rad start configuration by the robot's joint order; empty: not given
   std::vector<std::string> start_joints;  ///< names for start
   std::vector<std::filesystem::path> files;  ///< it was read from, meshes included
 

@@ -17,7 +17,7 @@ void fail_urdf(const std::filesystem::path& file, const std::string& message) {
 
 Eigen::Vector3d vector_of(const urdf::Vector3& v) { return {v.x, v.y, v.z}; }
 
-Eigen::Isometry3d pose_of(const urdf::Pose& pose, const std::filesystem::path& file, const std::string& element) {
+Eigen::Isometry3d urdf_pose(const urdf::Pose& pose, const std::filesystem::path& file, const std::string& element) {
   const urdf::Rotation& r = pose.rotation;
   Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
   X.linear() = Eigen::Quaterniond(r.w, r.x, r.y, r.z).normalized().toRotationMatrix();
@@ -90,7 +90,7 @@ std::vector<Geometry> shapes_of(const Elements& elements, const std::filesystem:
   for (const auto& shape : elements) {
     if (!shape || !shape->geometry) continue;
     result.push_back(
-        {shape_of(*shape->geometry, file, settings, element, cache), pose_of(shape->origin, file, element)});
+        {shape_of(*shape->geometry, file, settings, element, cache), urdf_pose(shape->origin, file, element)});
   }
   return result;
 }

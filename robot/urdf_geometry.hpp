@@ -25,7 +25,7 @@ using MeshCache = std::map<std::tuple<std::string, double, double, double>, std:
 [[noreturn]] void fail_urdf(const std::filesystem::path& file, const std::string& message);
 
 Eigen::Vector3d vector_of(const urdf::Vector3& v);
-Eigen::Isometry3d pose_of(const urdf::Pose& pose, const std::filesystem::path& file, const std::string& element);
+Eigen::Isometry3d urdf_pose(const urdf::Pose& pose, const std::filesystem::path& file, const std::string& element);
 
 /// The shapes of a link, of the kind that the settings ask for.
 std::vector<Geometry> geometry_of(const urdf::Link& link, const std::filesystem::path& file,

@@ -17,6 +17,7 @@
 #include "robot/load_robot.hpp"
 #include "robot/mesh.hpp"
 #include "robot/narrow_phase.hpp"
+#include "robot_test.hpp"
 
 namespace opponens::robot {
 namespace {
@@ -27,8 +28,6 @@ using Eigen::VectorXd;
 
 namespace fs = std::filesystem;
 const fs::path kModels = fs::path(OPPONENS_SOURCE_DIR) / "models";
-
-Isometry3d at(double x, double y, double z) { return Isometry3d(Eigen::Translation3d(x, y, z)); }
 
 /// A planar arm of three bars of 1 m that turn about z, bars 0.2 m wide. Neighbours may touch.
 RobotDescription folding_arm() {

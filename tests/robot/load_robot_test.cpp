@@ -15,13 +15,12 @@
 #include "core/require.hpp"
 #include "core/rng.hpp"
 #include "robot/collision.hpp"
+#include "robot_test.hpp"
 
 namespace opponens::robot {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string ours(const std::string& file) { return OPPONENS_SOURCE_DIR "/models/" + file; }
 
 /// A folder of one test, removed with it.
 class LoadRobot : public ::testing::Test {

@@ -16,14 +16,13 @@
 #include "core/rng.hpp"
 #include "robot/convex_distance.hpp"
 #include "robot/mesh.hpp"
+#include "robot_test.hpp"
 
 namespace opponens::robot {
 namespace {
 
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
-
-Isometry3d at(double x, double y, double z) { return Isometry3d(Eigen::Translation3d(x, y, z)); }
 
 Isometry3d random_pose(double spread, Rng& rng) {
   const Eigen::Quaterniond q(rng.normal(), rng.normal(), rng.normal(), rng.normal());

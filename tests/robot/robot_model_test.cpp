@@ -11,6 +11,7 @@
 
 #include "core/rng.hpp"
 #include "robot/load_robot.hpp"
+#include "robot_test.hpp"
 
 namespace opponens::robot {
 namespace {
@@ -24,8 +25,6 @@ VectorXd random_position(const RobotModel& robot, Rng& rng) {
   for (int i = 0; i < robot.dof(); ++i) q[i] = rng.uniform(robot.lower()[i], robot.upper()[i]);
   return q;
 }
-
-std::string ours(const std::string& file) { return OPPONENS_SOURCE_DIR "/models/" + file; }
 
 /// Robots that every kinematic test runs on: ours, and the real ones where the data folder is present.
 std::vector<RobotDescription> robots() {
