@@ -25,7 +25,8 @@ bool is_free_motion(const Demonstration& recording);
 /// Does not depend on the order. All recordings have the same joints.
 std::optional<LikenessReference> free_motion_reference(std::vector<const Demonstration*> recordings);
 
-/// Human-likeness of a hand path, in (0, 100]. The formula behind the paper's Table 2 is unpublished; this one is ours.
+/// Human-likeness of a hand path, in (0, 100]. The formula behind the paper's Table 2 is unpublished; this one is ours
+/// (docs/deviations.md, 7).
 /// With x a segment of the path in hand space, Sigma the reference covariance and s1 its largest standard deviation:
 ///   c(x) = sqrt(x' Sigma x) / (|x| s1),   HL = 100 sum |x| c(x) / sum |x|.
 /// 100 when the hand moves along the reference's first principal axis only. nullopt when the hand does not move or the

@@ -31,7 +31,7 @@ double bootstrap_quantile(const std::vector<double>& sorted, double p);
 Interval basic_logit_interval(double estimate, std::vector<double> replicates, double confidence);
 
 /// The plain percentile interval, for comparison: too narrow and shifted for a cumulative variance
-/// (docs/deviations.md).
+/// (docs/deviations.md, 18).
 Interval percentile_interval(std::vector<double> replicates, double confidence);
 
 /// Cumulative-variance shares, [replicates x n], of resamples of whole clusters. clusters: moments of each, in the
@@ -50,8 +50,8 @@ std::vector<Interval> cumulative_variance_intervals(const std::vector<SampleStat
 /// wholly outside for the low end, wholly inside for the high end. Shares of 0 and 1 only give the exact
 /// Clopper-Pearson interval of c trials; c perfect clusters [(a/2)^(1/c), 1], a = 1 - confidence. Holds its level for
 /// independent clusters of equal size in all known cases (a conjecture, simulated in intervals_test); it is wide when
-/// clusters are few. Source: Gaffke 2005, Mathematical Methods of Statistics 14(4); Learned-Miller and Thomas 2019,
-/// arXiv:1905.06208; Rubin 1981, doi:10.1214/aos/1176345338.
+/// clusters are few (docs/deviations.md, 19). Source: Gaffke 2005, Mathematical Methods of Statistics 14(4);
+/// Learned-Miller and Thomas 2019, arXiv:1905.06208; Rubin 1981, doi:10.1214/aos/1176345338.
 Interval ratio_interval(const Eigen::VectorXd& inside, const Eigen::VectorXd& total, int replicates, double confidence,
                         Rng& rng);
 

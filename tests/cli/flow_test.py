@@ -5,6 +5,7 @@ docs/cli.md; the chain of `why`; h5py reads what was stored."""
 import json
 import math
 import pathlib
+import re
 import shutil
 import tempfile
 import unittest
@@ -142,6 +143,10 @@ class Pipeline(unittest.TestCase):
             self.assertNotIn(f">{word}<", page)
         self.assertNotIn("http://", page.replace("http://www.w3.org", ""))
 
+    def test_the_report_tells_the_residual_that_retarget_told(self):
+        told = re.search(r"distance of the fingertips[^:]*: ([0-9.]+) mm", (self.one / "report.html").read_text()).group(1)
+        self.assertEqual(told, f"{1e3 * self.documents['retarget']['tip_residual_rms_m']:.1f}")
+
     def test_progress_and_text_stay_off_a_json_stdout(self):
         code, out, err = run("show", "--store", self.one / "store", "--json")
         self.assertEqual(code, 0)
@@ -238,6 +243,16 @@ class Recordings(unittest.TestCase):
         self.assertEqual(self.ingest("one"), first)
         motions = must("retarget", "--store", self.store)["ids"]
         self.assertEqual([self.object(motion)["provenance"]["inputs"][0] for motion in motions], first)
+
+    def test_recorded_and_simulated_motions_are_told_apart(self):
+        page = self.root / "report.html"
+        self.ingest("one")
+        must("report", "--store", self.store, "--out", page)
+        self.assertIn("<p>Recorded from people.</p>", page.read_text())
+        must("simulate", "--store", self.store, "--repetitions", 2)
+        must("report", "--store", self.store, "--out", page)
+        self.assertIn("<p>2 recorded from people, 36 made by opponens simulate", page.read_text())
+        self.assertNotIn("no human was recorded", page.read_text())
 
     def test_a_mapped_motion_names_all_that_it_was_made_from(self):
         recordings = self.ingest("one")
