@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "analysis/pca.hpp"
 #include "analysis/statistics.hpp"
@@ -26,11 +27,6 @@ struct Group {
   std::string name;
   std::string phase;
   std::vector<Part> parts;
-};
-
-struct Sorted {
-  std::vector<const Demonstration*> movements;  ///< by id
-  std::vector<const Demonstration*> free;       ///< by id
 };
 
 std::string label(const Demonstration& demonstration, const std::string& name) {
@@ -56,27 +52,39 @@ std::optional<Failure> fault(const Demonstration& demonstration, const std::vect
   return std::nullopt;
 }
 
-Result<Sorted> sort_and_check(const std::vector<Demonstration>& demonstrations, const AnalysisSettings& settings) {
-  Sorted sorted;
+using Movements = std::vector<const Demonstration*>;  // by id
+
+/// Recordings given twice would be taken for independent ones. Two sources may use the same name.
+std::optional<Failure> repetition(const std::vector<Demonstration>& demonstrations) {
+  std::set<std::pair<std::string, std::string>> seen;
+  for (const Demonstration& demonstration : demonstrations) {
+    const std::string source = label(demonstration, "source");
+    if (seen.insert({source, demonstration.id}).second) continue;
+    return Failure{FailureCode::invalid_input, "recording " + demonstration.id + " is given twice" +
+                                                   (source.empty() ? "" : " (source " + source + ")")};
+  }
+  return std::nullopt;
+}
+
+Result<Movements> sort_and_check(const std::vector<Demonstration>& demonstrations, const AnalysisSettings& settings) {
+  if (const auto found = repetition(demonstrations)) return tl::make_unexpected(*found);
+  Movements movements;
   for (const Demonstration& demonstration : demonstrations) {
     if (const auto found = fault(demonstration, demonstrations.front().joint_names)) {
       return tl::make_unexpected(*found);
     }
-    if (label(demonstration, "kind") == "free") {
-      sorted.free.push_back(&demonstration);
-      continue;
-    }
+    if (is_free_motion(demonstration)) continue;
     if (label(demonstration, settings.group_by).empty()) {
       return failure(FailureCode::invalid_input,
                      "recording " + demonstration.id + " has no label '" + settings.group_by + "' to group by");
     }
-    sorted.movements.push_back(&demonstration);
+    movements.push_back(&demonstration);
   }
-  if (sorted.movements.empty()) return failure(FailureCode::invalid_input, "no movements to analyze");
-  const auto by_id = [](const Demonstration* a, const Demonstration* b) { return a->id < b->id; };
-  std::stable_sort(sorted.movements.begin(), sorted.movements.end(), by_id);
-  std::stable_sort(sorted.free.begin(), sorted.free.end(), by_id);
-  return sorted;
+  if (movements.empty()) return failure(FailureCode::invalid_input, "no movements to analyze");
+  std::stable_sort(movements.begin(), movements.end(), [](const Demonstration* a, const Demonstration* b) {
+    return std::pair(a->id, label(*a, "source")) < std::pair(b->id, label(*b, "source"));
+  });
+  return movements;
 }
 
 Result<TransitionReport> find_transition(const Demonstration& demonstration, const AnalysisSettings& settings) {
@@ -190,17 +198,6 @@ Result<Learnt> learn(const Group& group, const std::vector<std::string>& joint_n
   return learnt;
 }
 
-std::optional<LikenessReference> free_motion(const std::vector<const Demonstration*>& recordings) {
-  if (recordings.empty()) return std::nullopt;
-  std::vector<SampleStatistics> parts;
-  bool simulated = false;
-  for (const Demonstration* recording : recordings) {
-    parts.push_back(moments(recording->q_h, recording->weight));
-    simulated = simulated || recording->origin == Origin::simulated;
-  }
-  return LikenessReference{simulated ? "free motions (simulated)" : "free motions", pooled(parts).covariance};
-}
-
 }  // namespace
 
 void validate(const AnalysisSettings& settings) {
@@ -233,8 +230,8 @@ TransitionSettings transition_settings(const AnalysisSettings& settings) {
 Result<Analysis> analyze(const std::vector<Demonstration>& demonstrations, const AnalysisSettings& settings) {
   validate(settings);
   if (demonstrations.empty()) return failure(FailureCode::invalid_input, "no recordings to analyze");
-  const Result<Sorted> sorted = sort_and_check(demonstrations, settings);
-  if (!sorted) return tl::make_unexpected(sorted.error());
+  const Result<Movements> movements = sort_and_check(demonstrations, settings);
+  if (!movements) return tl::make_unexpected(movements.error());
   Analysis analysis;
   analysis.synergies.joint_names = demonstrations.front().joint_names;
   const auto joints = static_cast<Eigen::Index>(analysis.synergies.joint_names.size());
@@ -247,7 +244,7 @@ Result<Analysis> analyze(const std::vector<Demonstration>& demonstrations, const
   std::map<const Demonstration*, int> splits;
   if (settings.transition) {
     for (const Demonstration& demonstration : demonstrations) {
-      if (label(demonstration, "kind") == "free") continue;
+      if (is_free_motion(demonstration)) continue;
       const Result<TransitionReport> found = find_transition(demonstration, settings);
       if (!found) return tl::make_unexpected(found.error());
       splits[&demonstration] =
@@ -255,7 +252,7 @@ Result<Analysis> analyze(const std::vector<Demonstration>& demonstrations, const
       analysis.transitions.push_back(*found);
     }
   }
-  for (const Group& group : form_groups(sorted->movements, splits, settings)) {
+  for (const Group& group : form_groups(*movements, splits, settings)) {
     Result<Learnt> learnt = learn(group, analysis.synergies.joint_names, scale, settings);
     if (!learnt) return tl::make_unexpected(learnt.error());
     if (analysis.groups.empty()) {
@@ -265,7 +262,9 @@ Result<Analysis> analyze(const std::vector<Demonstration>& demonstrations, const
     }
     analysis.groups.push_back(std::move(learnt->report));
   }
-  analysis.free_motion = free_motion(sorted->free);
+  std::vector<const Demonstration*> all;
+  for (const Demonstration& demonstration : demonstrations) all.push_back(&demonstration);
+  analysis.free_motion = free_motion_reference(std::move(all));
   return analysis;
 }
 

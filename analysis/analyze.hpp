@@ -80,9 +80,9 @@ struct Analysis {
 /// grasp; they give the human-likeness reference only. A group's clusters are its subjects, or its recordings when it
 /// has one subject. The result does not depend on the order of the demonstrations, except that of `transitions`.
 ///
-/// Failure, with a sentence naming the recording or group: invalid_input (no movements, joints that differ, a label
-/// absent, samples not finite, time that does not increase), too_few_samples (a recording too short to split; a group
-/// with no more samples than joints), degenerate (nothing moves).
+/// Failure, with a sentence naming the recording or group: invalid_input (no movements, a recording given twice, joints
+/// that differ, a label absent, samples not finite, time that does not increase), too_few_samples (a recording too
+/// short to split; a group with no more samples than joints), degenerate (nothing moves).
 Result<Analysis> analyze(const std::vector<Demonstration>& demonstrations, const AnalysisSettings& settings);
 
 }  // namespace opponens::analysis

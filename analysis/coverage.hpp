@@ -24,7 +24,7 @@ struct Cluster {
 struct Coverage {
   double in_sample = 0.0;
   std::optional<double> held_out;    ///< one cluster left out at a time; nullopt with a single cluster
-  std::optional<Interval> interval;  ///< of held_out, over clusters
+  std::optional<Interval> interval;  ///< of held_out, over clusters (ratio_interval)
   double nominal = 0.0;              ///< axis_probability to the power of the number of axes with width
 };
 

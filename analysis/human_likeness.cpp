@@ -7,9 +7,30 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "analysis/statistics.hpp"
 #include "core/require.hpp"
 
 namespace opponens::analysis {
+
+bool is_free_motion(const Demonstration& recording) {
+  const auto kind = recording.labels.find("kind");
+  return kind != recording.labels.end() && kind->second == "free";
+}
+
+std::optional<LikenessReference> free_motion_reference(std::vector<const Demonstration*> recordings) {
+  std::erase_if(recordings, [](const Demonstration* recording) { return !is_free_motion(*recording); });
+  if (recordings.empty()) return std::nullopt;
+  std::stable_sort(recordings.begin(), recordings.end(),
+                   [](const Demonstration* a, const Demonstration* b) { return a->id < b->id; });
+  std::vector<SampleStatistics> parts;
+  bool simulated = false;
+  for (const Demonstration* recording : recordings) {
+    parts.push_back(moments(recording->q_h, recording->weight));
+    simulated = simulated || recording->origin == Origin::simulated;
+  }
+  return LikenessReference{simulated ? "free finger motions (simulated)" : "free finger motions",
+                           pooled(parts).covariance};
+}
 
 std::optional<double> human_likeness(const Eigen::Ref<const Eigen::MatrixXd>& q_h, const LikenessReference& reference) {
   const Eigen::MatrixXd& sigma = reference.covariance;

@@ -12,8 +12,10 @@
 namespace opponens::analysis {
 namespace {
 
-// A share within this of 0 or 1 is one; its logit (36.7) would be rounding, not information.
-constexpr double kShareFloor = 1e-15;
+// A share within this of 0 or 1 is one: one step of one sensor in one of ten thousand samples is more.
+constexpr double kShareFloor = 1e-9;
+
+bool certain(double share) { return share <= kShareFloor || share >= 1.0 - kShareFloor; }
 
 double logit(double p) {
   const double inside = std::clamp(p, kShareFloor, 1.0 - kShareFloor);
@@ -21,6 +23,8 @@ double logit(double p) {
 }
 
 double logistic(double x) { return 1.0 / (1.0 + std::exp(-x)); }
+
+double exponential(Rng& rng) { return -std::log1p(-rng.uniform()); }
 
 void check(double confidence, std::size_t replicates) {
   require(confidence > 0.0 && confidence < 1.0, "interval: confidence must be in (0, 1)");
@@ -48,22 +52,24 @@ double bootstrap_quantile(const std::vector<double>& sorted, double p) {
   return sorted[below] + part * (sorted[above] - sorted[below]);
 }
 
-Interval basic_logit_interval(double estimate, std::vector<double> replicates, double confidence) {
+Interval percentile_interval(std::vector<double> replicates, double confidence) {
   check(confidence, replicates.size());
-  if (estimate <= kShareFloor || estimate >= 1.0 - kShareFloor) return {estimate, estimate};
+  std::sort(replicates.begin(), replicates.end());
+  const double tail = 0.5 * (1.0 - confidence);
+  return {bootstrap_quantile(replicates, tail), bootstrap_quantile(replicates, 1.0 - tail)};
+}
+
+Interval basic_logit_interval(double estimate, std::vector<double> replicates, double confidence) {
+  const Interval plain = percentile_interval(replicates, confidence);
+  if (certain(estimate) || certain(plain.low) || certain(plain.high)) {
+    return {std::min(estimate, plain.low), std::max(estimate, plain.high)};
+  }
   std::transform(replicates.begin(), replicates.end(), replicates.begin(), logit);
   std::sort(replicates.begin(), replicates.end());
   const double tail = 0.5 * (1.0 - confidence);
   const double centre = 2.0 * logit(estimate);
   return {logistic(centre - bootstrap_quantile(replicates, 1.0 - tail)),
           logistic(centre - bootstrap_quantile(replicates, tail))};
-}
-
-Interval percentile_interval(std::vector<double> replicates, double confidence) {
-  check(confidence, replicates.size());
-  std::sort(replicates.begin(), replicates.end());
-  const double tail = 0.5 * (1.0 - confidence);
-  return {bootstrap_quantile(replicates, tail), bootstrap_quantile(replicates, 1.0 - tail)};
 }
 
 Eigen::MatrixXd bootstrap_cumulative_variance(const std::vector<SampleStatistics>& clusters, int replicates, Rng& rng) {
@@ -99,13 +105,26 @@ std::vector<Interval> cumulative_variance_intervals(const std::vector<SampleStat
 
 Interval ratio_interval(const Eigen::VectorXd& inside, const Eigen::VectorXd& total, int replicates, double confidence,
                         Rng& rng) {
-  require(inside.size() == total.size() && (total.array() > 0.0).all(), "ratio_interval: a cluster has no samples");
-  std::vector<double> ratios;
+  check(confidence, static_cast<std::size_t>(std::max(replicates, 0)));
+  require(inside.size() == total.size() && inside.size() >= 2, "ratio_interval: at least 2 clusters");
+  require((total.array() > 0.0).all() && (inside.array() >= 0.0).all() && (inside.array() <= total.array()).all(),
+          "ratio_interval: a cluster has no samples, or more inside than it has");
+  const double unseen = total.mean();
+  std::vector<double> low;
+  std::vector<double> high;
   for (int replicate = 0; replicate < replicates; ++replicate) {
-    const Eigen::VectorXd counts = resample_counts(static_cast<int>(total.size()), rng).cast<double>();
-    ratios.push_back(counts.dot(inside) / counts.dot(total));
+    Eigen::VectorXd weight(total.size());
+    for (double& one : weight) one = exponential(rng);
+    const double added = exponential(rng) * unseen;
+    const double part = weight.dot(inside);
+    const double all = weight.dot(total) + added;
+    low.push_back(part / all);
+    high.push_back((part + added) / all);
   }
-  return basic_logit_interval(inside.sum() / total.sum(), std::move(ratios), confidence);
+  std::sort(low.begin(), low.end());
+  std::sort(high.begin(), high.end());
+  const double tail = 0.5 * (1.0 - confidence);
+  return {bootstrap_quantile(low, tail), bootstrap_quantile(high, 1.0 - tail)};
 }
 
 }  // namespace opponens::analysis

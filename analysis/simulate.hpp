@@ -35,7 +35,7 @@ struct FreeMotionModel {
 };
 
 /// The movement of a simulated hand, n glove channels. models/human/grasp_types.yaml holds the values with their
-/// sources; the defaults here equal that file's.
+/// sources; the defaults here equal that file's. Differences from the paper's recordings: docs/deviations.md, 8 and 9.
 struct SimulationModel {
   std::vector<std::string> channels;  ///< [n] canonical names
   std::vector<std::string> fingers;   ///< [n] whose common flexion drives the channel in free motion; "": its own

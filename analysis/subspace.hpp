@@ -9,7 +9,7 @@
 
 namespace opponens::analysis {
 
-/// Channels that span the samples, and those that add nothing to them.
+/// Channels that span the samples, and those that add nothing to them (docs/deviations.md, 2).
 struct EffectiveSubspace {
   std::vector<int> kept;     ///< ascending channel indices; their count is the effective number of degrees of freedom
   std::vector<int> dropped;  ///< ascending: constant channels and linear combinations of the kept ones

@@ -29,9 +29,15 @@ const char* rule_name(analysis::TransitionRule rule) {
 }
 
 /// What is analysed: hand motions when there are any, else the glove recordings.
-std::vector<Stored<Demonstration>> input_motions(const storage::Store& store, const std::string& input) {
-  auto motions = input == "glove" ? recordings(store) : hand_motions(store);
-  if (motions.empty() && input.empty()) motions = recordings(store);
+std::vector<Stored<Demonstration>> input_motions(const storage::Store& store, const std::string& input,
+                                                 const Console& console) {
+  std::vector<Stored<Demonstration>> motions;
+  if (input != "glove") motions = hand_motions(store).newest;
+  if (motions.empty() && input != "hand") {
+    Motions recorded = recordings(store);
+    say_superseded(console, recorded.superseded);
+    motions = std::move(recorded.newest);
+  }
   if (motions.empty()) {
     throw InputError(store.directory().string() + ": nothing to analyse" +
                      (input == "hand" ? "; run: opponens retarget" : "; run: opponens simulate, or opponens ingest"));
@@ -153,7 +159,7 @@ Json parameters_json(const AnalyzeOptions& options) {
 int analyze(const AnalyzeOptions& options, const Console& console) {
   storage::Store store(options.common.store, false);
   const RunLog log(store, "analyze", 1);
-  const auto motions = input_motions(store, options.input);
+  const auto motions = input_motions(store, options.input, console);
   const AnalysisSettings settings = settings_from(options, motions);
   std::vector<Demonstration> demonstrations;
   std::vector<std::string> inputs;

@@ -78,9 +78,6 @@ void declare_retarget(CLI::App& app, RetargetOptions& options) {
   app.add_option("--mapping", options.mapping, "paper: flexion joint to joint, abduction and thumb by fingertips")
       ->check(CLI::IsMember({"paper"}))
       ->capture_default_str();
-  app.add_option("--hand-length", options.hand_length, "Wearer's hand length in m, where a recording does not say")
-      ->check(CLI::Range(0.12, 0.25))
-      ->capture_default_str();
 }
 
 void declare_analyze(CLI::App& app, AnalyzeOptions& options) {

@@ -39,7 +39,6 @@ struct RetargetOptions {
   Common common{};
   std::string hand = "models/ur5_allegro/allegro_right.yaml";
   std::string mapping = "paper";
-  double hand_length = 0.19;  ///< m, wearer's
 };
 struct AnalyzeOptions {
   Common common{};

@@ -52,8 +52,10 @@ void say_summary(const Console& console, const storage::Summary& summary) {
 storage::Record recording_record(const Demonstration& motion, const storage::FileReport& file,
                                  const std::filesystem::path& source) {
   auto origin = provenance(
-      "ingest", {}, {source},
+      "ingest", {}, {},
       {{"rows", file.rows}, {"trimmed_start_s", file.trimmed_start}, {"trimmed_end_s", file.trimmed_end}}, 0);
+  origin.files[portable_name(source)] = file_sha256(source);
+  origin.files[file.index] = file.index_sha256;
   origin.files[file.file.filename().string()] = file.sha256;
   return storage::encode(motion, origin);
 }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <ctime>
 
-#include "analysis/statistics.hpp"
 #include "core/require.hpp"
 #include "motion/closing_segment.hpp"
 #include "motion/edge_check.hpp"
@@ -43,7 +42,7 @@ Query make_query(const storage::Store& store, const NamedWorld& world) {
   auto synergies = newest_synergies(store);
   require_same_joints(synergies.value, world.hand);
   Query query{start_configuration(world.robot, world.scene), std::move(synergies.value), {}, {}, {}, {}};
-  query.grasps = grasps_of(store, synergies.id, world.parameters);
+  query.grasps = grasps_of(store, synergies.id, world.key());
   if (query.grasps.empty()) {
     throw InputError(store.directory().string() + ": no grasps of " + world.object +
                      " with this robot, scene and the newest synergies; run: opponens grasp");
@@ -61,17 +60,10 @@ Query make_query(const storage::Store& store, const NamedWorld& world) {
 }
 
 std::optional<LikenessReference> free_motion_reference(const storage::Store& store) {
-  std::vector<SampleStatistics> parts;
-  bool simulated = false;
-  for (const auto& motion : hand_motions(store)) {
-    const auto kind = motion.value.labels.find("kind");
-    if (kind == motion.value.labels.end() || kind->second != "free") continue;
-    simulated = simulated || motion.value.origin == Origin::simulated;
-    parts.push_back(analysis::moments(motion.value.q_h, motion.value.weight));
-  }
-  if (parts.empty()) return std::nullopt;
-  return LikenessReference{simulated ? "free finger motions (simulated)" : "free finger motions",
-                           analysis::pooled(parts).covariance};
+  const Motions motions = hand_motions(store);
+  std::vector<const Demonstration*> values;
+  for (const auto& motion : motions.newest) values.push_back(&motion.value);
+  return analysis::free_motion_reference(values);
 }
 
 Planning::Planning(const PlanOptions& options, const NamedWorld& world, Query query,

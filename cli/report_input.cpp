@@ -26,25 +26,14 @@ std::string text_field(const storage::Record& record, const std::string& name) {
   return text == nullptr ? std::string() : *text;
 }
 
-std::optional<storage::Record> newest(const storage::Store& store, const char* kind) {
-  const auto entries = store.list(kind);
-  if (entries.empty()) return std::nullopt;
-  return store.read(entries.back().id);
-}
-
 std::string group_label(const Demonstration& motion, const std::string& group_by) {
   const auto found = motion.labels.find(group_by);
   return found == motion.labels.end() ? "(no " + group_by + ")" : found->second;
 }
 
-bool is_free_motion(const Demonstration& motion) {
-  const auto kind = motion.labels.find("kind");
-  return kind != motion.labels.end() && kind->second == "free";
-}
-
 void count_motion(const Demonstration& motion, const std::string& group_by,
                   std::map<std::string, RecordingGroup>& groups) {
-  const std::string name = is_free_motion(motion) ? "free motions" : group_label(motion, group_by);
+  const std::string name = analysis::is_free_motion(motion) ? "free motions" : group_label(motion, group_by);
   const double seconds = motion.time(motion.time.size() - 1) - motion.time(0);
   auto& group = groups[name];
   group.duration = group.recordings == 0
@@ -57,27 +46,35 @@ void count_motion(const Demonstration& motion, const std::string& group_by,
   group.samples += static_cast<int>(motion.time.size());
 }
 
+std::string origin_sentence(int simulated, int all) {
+  if (simulated == 0) return "Recorded from people.";
+  if (simulated == all) return "Made by opponens simulate; no human was recorded.";
+  return std::to_string(all - simulated) + " recorded from people, " + std::to_string(simulated) +
+         " made by opponens simulate: no figure below is about people alone.";
+}
+
 DemonstrationPart demonstration_part(const std::vector<Stored<Demonstration>>& motions, const std::string& group_by) {
   DemonstrationPart part;
   part.grouped_by = group_by;
   std::map<std::string, RecordingGroup> groups;
-  double squares = 0.0;
-  int mapped = 0;
+  double squares = 0.0;  // over all samples, as retarget tells it
+  double mapped = 0.0;
   for (const auto& motion : motions) {
     if (motion.value.origin == Origin::simulated) ++part.simulated;
     count_motion(motion.value, group_by, groups);
     const auto residual = motion.record.fields.find("tip_residual_rms");
     if (residual == motion.record.fields.end()) continue;
     const double value = std::get<double>(residual->second);
-    squares += value * value;
-    ++mapped;
+    const auto samples = static_cast<double>(motion.value.time.size());
+    squares += value * value * samples;
+    mapped += samples;
   }
   for (auto& [name, group] : groups) part.groups.push_back(std::move(group));
-  if (mapped > 0) {
+  if (mapped > 0.0) {
     part.mapping = parameters_of(motions.front().record).value("mapping", "");
     part.tip_residual = std::sqrt(squares / mapped);
   }
-  part.source = part.simulated > 0 ? "Made by opponens simulate; no human was recorded." : "Recorded from people.";
+  part.source = origin_sentence(part.simulated, static_cast<int>(motions.size()));
   part.example = motions.front().value;
   return part;
 }
@@ -165,10 +162,10 @@ SynergyPart synergy_part(const Stored<SynergySet>& synergies, const Json& found)
   return part;
 }
 
-GraspPart grasp_part(const storage::Store& store, const std::string& synergies, const Json& world,
+GraspPart grasp_part(const storage::Store& store, const std::string& synergies, const WorldKey& world,
                      const std::map<std::string, bool>& verdicts) {
   GraspPart part;
-  part.object = world.at("object");
+  part.object = world.object;
   for (auto& stored : grasps_of(store, synergies, world)) {
     const auto verdict = verdicts.find(stored.id);
     part.items.push_back({stored.id, std::move(stored.value),
@@ -179,7 +176,7 @@ GraspPart grasp_part(const storage::Store& store, const std::string& synergies, 
   });
   for (const auto& entry : store.list(kGraspSearch)) {
     const auto record = store.read(entry.id);
-    if (entry.inputs != std::vector<std::string>{synergies} || parameters_of(record).at("world") != world) continue;
+    if (entry.inputs != std::vector<std::string>{synergies} || world_key(record) != world) continue;
     const Json summary = Json::parse(text_field(record, "summary"));
     part.trials += summary.at("trials").get<std::int64_t>();
     for (const auto& [reason, count] : summary.at("rejected").items())
@@ -255,24 +252,24 @@ RunPart run_part(const storage::Store& store) {
 
 void add_world_and_results(const storage::Store& store, const std::string& synergies, ReportInput& input) {
   std::map<std::string, bool> verdicts;
-  if (const auto record = newest(store, kVerdicts)) {
-    const Json found = Json::parse(text_field(*record, "verdicts"));
+  if (const auto id = newest(store, kVerdicts)) {
+    const Json found = Json::parse(text_field(store.read(*id), "verdicts"));
     input.verification = verify_part(found);
     for (const auto& verdict : input.verification->verdicts) verdicts[verdict.id] = verdict.passed;
   }
-  const auto path_entries = store.list(kPath);
-  const auto grasp_entries = store.list(kGrasp);
-  if (path_entries.empty() && grasp_entries.empty()) return;
-  const std::string newest_id = path_entries.empty() ? grasp_entries.back().id : path_entries.back().id;
-  const storage::Record record = store.read(newest_id);
+  const auto grasp = newest_made_from(store, kGrasp, {synergies});
+  if (!grasp) return;
+  const auto path = newest_path(store, synergies);
+  const std::string& id = path ? *path : *grasp;
+  const storage::Record record = store.read(id);
   const Json world = parameters_of(record).at("world");
   NamedWorld loaded = load_world(world.at("robot"), world.at("scene"), world.at("object"));
   input.robot = std::move(loaded.robot);
   input.hand = std::move(loaded.hand);
   input.scene = std::move(loaded.scene);
-  input.grasps = grasp_part(store, synergies, world, verdicts);
-  if (!path_entries.empty()) input.path = path_part(newest_id, record);
-  input.provenance = chain_of(store, newest_id);
+  input.grasps = grasp_part(store, synergies, world_key(record), verdicts);
+  if (path) input.path = path_part(id, record);
+  input.provenance = chain_of(store, id);
 }
 
 }  // namespace
@@ -281,8 +278,8 @@ ReportInput report_input(const storage::Store& store) {
   ReportInput input;
   input.program_version = OPPONENS_VERSION;
   input.run = run_part(store);
-  auto motions = hand_motions(store);
-  if (motions.empty()) motions = recordings(store);
+  auto motions = hand_motions(store).newest;
+  if (motions.empty()) motions = recordings(store).newest;
   if (store.list(kSynergySet).empty()) {
     if (!motions.empty()) input.demonstrations = demonstration_part(motions, "family");
     return input;

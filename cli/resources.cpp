@@ -44,7 +44,12 @@ std::string recorded_name(const fs::path& file) {
     const fs::path relative = full.lexically_relative(fs::weakly_canonical(folder));
     if (!relative.empty() && *relative.begin() != "..") return relative.generic_string();
   }
-  return file.generic_string();
+  return full.generic_string();
+}
+
+std::string portable_name(const fs::path& file) {
+  const fs::path name = recorded_name(file);
+  return (name.is_absolute() ? name.filename() : name).generic_string();
 }
 
 std::string file_sha256(const fs::path& file) {

@@ -11,9 +11,13 @@ namespace opponens::cli {
 /// share/opponens beside this program, or the source tree it was built from). Throws InputError when nowhere.
 std::filesystem::path find_file(const std::string& name);
 
-/// The name under which a found file is recorded: relative to the data folder when it lies inside, so that equal runs
-/// on two machines store equal bytes.
+/// The name under which a found file is recorded and found again: relative to the data folder when it lies inside, so
+/// that equal runs on two machines store equal bytes; else absolute, so that it is found from any working directory.
 std::string recorded_name(const std::filesystem::path& file);
+
+/// The name under which a file is recorded that is never looked for again: as above, but outside the data folder the
+/// file's name alone, so that the same recording is the same object whatever path led to it.
+std::string portable_name(const std::filesystem::path& file);
 
 /// SHA-256 (hex) of a file's bytes. Throws InputError when it cannot be read.
 std::string file_sha256(const std::filesystem::path& file);

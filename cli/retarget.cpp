@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The opponens authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 
@@ -18,7 +17,6 @@ namespace opponens::cli {
 namespace {
 
 constexpr const char* kHumanHand = "models/human_hand/human_hand.yaml";
-constexpr double kModelHandLength = 0.19;  // m, of models/human_hand
 
 std::string label(const Demonstration& motion, const std::string& name) {
   const auto found = motion.labels.find(name);
@@ -39,46 +37,36 @@ robot::ChannelCalibration identity(const std::vector<std::string>& channels) {
   return {channels, Eigen::VectorXd::Ones(n), Eigen::VectorXd::Zero(n)};
 }
 
-using Calibrations = std::map<std::string, robot::ChannelCalibration>;
+/// How the channels of one cluster are calibrated, and from which recordings.
+struct Calibration {
+  robot::ChannelCalibration channels;
+  std::vector<std::string> recordings;  ///< ids
+};
+using Calibrations = std::map<std::string, Calibration>;
 
 Calibrations calibrate(const std::vector<Stored<Demonstration>>& motions, const robot::RobotModel& human) {
   std::map<std::string, std::vector<const Demonstration*>> clusters;
+  Calibrations result;
   for (const auto& motion : motions) {
     const auto cluster = calibration_cluster(motion.value);
-    if (!cluster.empty()) clusters[cluster].push_back(&motion.value);
+    if (cluster.empty()) continue;
+    clusters[cluster].push_back(&motion.value);
+    result[cluster].recordings.push_back(motion.id);
   }
-  Calibrations result;
-  for (const auto& [cluster, members] : clusters) result[cluster] = robot::calibrate_range(members, human, {});
+  for (const auto& [cluster, members] : clusters) {
+    result.at(cluster).channels = robot::calibrate_range(members, human, {});
+  }
   return result;
 }
 
-double hand_length(const Demonstration& motion, double otherwise) {
-  const std::string text = label(motion, "hand_length");
-  if (text.empty()) return otherwise;
-  double length = 0.0;
-  const auto end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, length);
-  if (error != std::errc() || stop != end || !(length > 0.0)) {
-    throw InputError(motion.id + ": label hand_length is '" + text + "', expected metres");
+/// What a mapped motion is made from: its recording first, then the others that its calibration rests on.
+std::vector<std::string> inputs_of(const std::string& recording, const Calibration& calibration) {
+  std::vector<std::string> inputs = {recording};
+  for (const auto& other : calibration.recordings) {
+    if (other != recording) inputs.push_back(other);
   }
-  return length;
+  return inputs;
 }
-
-/// Human hands by length: a store rarely has more than a few wearers.
-class HumanHands {
- public:
-  explicit HumanHands(robot::RobotDescription description) : description_(std::move(description)) {}
-  const robot::RobotModel& of_length(double length) {
-    const auto found = hands_.find(length);
-    if (found != hands_.end()) return found->second;
-    return hands_.emplace(length, robot::RobotModel(robot::scaled(description_, length / kModelHandLength)))
-        .first->second;
-  }
-
- private:
-  robot::RobotDescription description_;
-  std::map<double, robot::RobotModel> hands_;
-};
 
 struct Residuals {
   double squares = 0.0;
@@ -101,29 +89,33 @@ storage::Record motion_record(const robot::Retargeted& mapped, const storage::Pr
 int retarget(const RetargetOptions& options, const Console& console) {
   storage::Store store(options.common.store, false);
   const RunLog log(store, "retarget", 1);
-  const auto motions = recordings(store);
+  const auto [motions, superseded] = recordings(store);
   if (motions.empty())
     throw InputError(store.directory().string() + ": no recordings; run: opponens simulate, or ingest");
   const auto hand_file = find_file(options.hand);
   const auto human_file = find_file(kHumanHand);
+  say_superseded(console, superseded);
   const robot::RobotModel hand(robot::load_hand(hand_file));
+  const robot::RobotModel human(robot::load_hand(human_file));
   const auto mapping = robot::load_hand_mapping(hand_file);
-  HumanHands humans(robot::load_hand(human_file));
-  const Calibrations calibrations = calibrate(motions, humans.of_length(options.hand_length));
+  const Calibrations calibrations = calibrate(motions, human);
+  std::vector<std::filesystem::path> files = hand.description().files;
+  files.insert(files.end(), human.description().files.begin(), human.description().files.end());
+  storage::Provenance origin =
+      provenance("retarget", {}, files, {{"hand", recorded_name(hand_file)}, {"mapping", options.mapping}}, 0);
 
   Progress progress(console, "mapping to the robot hand");
   std::vector<storage::Record> records;
   Residuals residuals;
   for (const auto& motion : motions) {
     progress.update(static_cast<std::int64_t>(records.size()), static_cast<std::int64_t>(motions.size()));
-    const double length = hand_length(motion.value, options.hand_length);
     const auto cluster = calibration_cluster(motion.value);
-    const auto calibration = cluster.empty() ? identity(motion.value.joint_names) : calibrations.at(cluster);
-    const auto mapped = robot::retarget(motion.value, calibration, humans.of_length(length), hand, mapping, {});
+    const auto calibration =
+        cluster.empty() ? Calibration{identity(motion.value.joint_names), {}} : calibrations.at(cluster);
+    const auto mapped = robot::retarget(motion.value, calibration.channels, human, hand, mapping, {});
     if (!mapped) throw InputError(motion.value.id + ": " + mapped.error().detail);
-    const Json parameters = {{"hand", recorded_name(hand_file)}, {"mapping", options.mapping}, {"hand_length", length}};
-    records.push_back(
-        motion_record(*mapped, provenance("retarget", {motion.id}, {hand_file, human_file}, parameters, 0)));
+    origin.inputs = inputs_of(motion.id, calibration);
+    records.push_back(motion_record(*mapped, origin));
     const auto samples = static_cast<int>(motion.value.time.size());
     residuals.squares += mapped->tip_residual_rms * mapped->tip_residual_rms * samples;
     residuals.largest = std::max(residuals.largest, mapped->tip_residual_max);

@@ -9,8 +9,8 @@
 #include <chrono>
 #include <ctime>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <thread>
+#include <utility>
 
 #include "cli/resources.hpp"
 #include "core/require.hpp"
@@ -36,10 +36,27 @@ std::string utc_date(double seconds) {
   return text.data();
 }
 
-Stored<Demonstration> read_demonstration(const storage::Store& store, const std::string& id) {
-  storage::Record record = store.read(id);
-  Demonstration value = storage::decode_demonstration(record);
-  return {id, std::move(record), std::move(value)};
+Motions motions_of(const storage::Store& store, const char* kind) {
+  std::map<std::string, std::size_t> age;  // by id, larger is newer
+  for (const auto& entry : store.list_as_produced(kind)) age.emplace(entry.id, age.size());
+  Motions motions;
+  std::map<std::pair<std::string, std::string>, std::size_t> places;  // source and recording -> place in newest
+  for (const auto& entry : store.list(kind)) {
+    storage::Record record = store.read(entry.id);
+    Demonstration value = storage::decode_demonstration(record);
+    const auto source = value.labels.find("source");
+    const std::string name = source == value.labels.end() ? std::string() : source->second;
+    Stored<Demonstration> motion{entry.id, std::move(record), std::move(value)};
+    const auto [place, first] = places.try_emplace({name, motion.value.id}, motions.newest.size());
+    if (first) {
+      motions.newest.push_back(std::move(motion));
+      continue;
+    }
+    ++motions.superseded;
+    Stored<Demonstration>& other = motions.newest[place->second];
+    if (age.at(motion.id) > age.at(other.id)) other = std::move(motion);
+  }
+  return motions;
 }
 
 }  // namespace
@@ -57,40 +74,57 @@ storage::Provenance provenance(const std::string& command, std::vector<std::stri
   return result;
 }
 
-std::vector<Stored<Demonstration>> recordings(const storage::Store& store) {
-  std::vector<Stored<Demonstration>> result;
-  for (const auto& entry : store.list(kRecording)) result.push_back(read_demonstration(store, entry.id));
-  return result;
+void say_superseded(const Console& console, int superseded) {
+  if (superseded == 0) return;
+  console.say(std::to_string(superseded) + " recordings are superseded by newer ones of the same source and name");
 }
 
-std::vector<Stored<Demonstration>> hand_motions(const storage::Store& store) {
-  std::map<std::string, std::string> newest;  // recording id -> motion id
-  std::vector<std::string> order;
-  for (const auto& entry : store.list(kHandMotion)) {
-    const std::string source = entry.inputs.empty() ? entry.id : entry.inputs.front();
-    if (newest.insert_or_assign(source, entry.id).second) order.push_back(source);
+Motions recordings(const storage::Store& store) { return motions_of(store, kRecording); }
+
+Motions hand_motions(const storage::Store& store) { return motions_of(store, kHandMotion); }
+
+std::optional<std::string> newest(const storage::Store& store, const char* kind) {
+  const auto entries = store.list_as_produced(kind);
+  return entries.empty() ? std::nullopt : std::optional(entries.back().id);
+}
+
+std::optional<std::string> newest_made_from(const storage::Store& store, const char* kind,
+                                            const std::set<std::string>& inputs) {
+  const auto entries = store.list_as_produced(kind);
+  const auto found = std::find_if(entries.rbegin(), entries.rend(), [&](const storage::IndexEntry& entry) {
+    return std::any_of(entry.inputs.begin(), entry.inputs.end(), [&](const auto& id) { return inputs.contains(id); });
+  });
+  return found == entries.rend() ? std::nullopt : std::optional(found->id);
+}
+
+std::optional<std::string> newest_path(const storage::Store& store, const std::string& synergies) {
+  std::set<std::string> grasps;
+  for (const auto& entry : store.list(kGrasp)) {
+    if (std::find(entry.inputs.begin(), entry.inputs.end(), synergies) != entry.inputs.end()) grasps.insert(entry.id);
   }
-  std::vector<Stored<Demonstration>> result;
-  for (const auto& source : order) result.push_back(read_demonstration(store, newest.at(source)));
-  return result;
+  return newest_made_from(store, kPath, grasps);
 }
 
 Stored<SynergySet> newest_synergies(const storage::Store& store) {
-  const auto entries = store.list(kSynergySet);
-  if (entries.empty()) throw InputError(store.directory().string() + ": no synergies yet; run: opponens analyze");
-  storage::Record record = store.read(entries.back().id);
+  const auto id = newest(store, kSynergySet);
+  if (!id) throw InputError(store.directory().string() + ": no synergies yet; run: opponens analyze");
+  storage::Record record = store.read(*id);
   SynergySet value = storage::decode_synergy_set(record);
-  return {entries.back().id, std::move(record), std::move(value)};
+  return {*id, std::move(record), std::move(value)};
 }
 
-std::vector<Stored<Grasp>> grasps_of(const storage::Store& store, const std::string& synergies,
-                                     const nlohmann::json& world) {
+WorldKey world_key(const storage::Record& record) {
+  WorldKey key{parameters_of(record).at("world").at("object"), {}};
+  for (const auto& [name, hash] : record.provenance.files) key.files.insert(hash);
+  return key;
+}
+
+std::vector<Stored<Grasp>> grasps_of(const storage::Store& store, const std::string& synergies, const WorldKey& world) {
   std::vector<Stored<Grasp>> result;
   for (const auto& entry : store.list(kGrasp)) {
     if (std::find(entry.inputs.begin(), entry.inputs.end(), synergies) == entry.inputs.end()) continue;
     storage::Record record = store.read(entry.id);
-    const auto parameters = parameters_of(record);
-    if (parameters.at("world") != world) continue;
+    if (world_key(record) != world) continue;
     Grasp value = storage::decode_grasp(record);
     result.push_back({entry.id, std::move(record), std::move(value)});
   }

@@ -4,12 +4,14 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "cli/console.hpp"
 #include "core/demonstration.hpp"
 #include "core/grasp.hpp"
 #include "core/synergies.hpp"
@@ -39,16 +41,40 @@ storage::Provenance provenance(const std::string& command, std::vector<std::stri
                                const std::vector<std::filesystem::path>& files, const nlohmann::json& parameters,
                                std::uint64_t seed);
 
-std::vector<Stored<Demonstration>> recordings(const storage::Store& store);
-/// The newest mapping of each recording.
-std::vector<Stored<Demonstration>> hand_motions(const storage::Store& store);
+/// Motions by source and recording: of several with the same label "source" and the same id, the newest.
+struct Motions {
+  std::vector<Stored<Demonstration>> newest;  ///< in the order in which the first of each was stored
+  int superseded = 0;                         ///< older ones left out
+};
+/// Tells how many recordings are left out, when there are any.
+void say_superseded(const Console& console, int superseded);
+Motions recordings(const storage::Store& store);
+/// The same of recordings mapped to a robot hand.
+Motions hand_motions(const storage::Store& store);
+
+/// "newest" is what was made last, also when it had been made before (Store::list_as_produced).
+std::optional<std::string> newest(const storage::Store& store, const char* kind);
+/// The newest object of a kind that was made from any of the given objects.
+std::optional<std::string> newest_made_from(const storage::Store& store, const char* kind,
+                                            const std::set<std::string>& inputs);
+/// The newest path to a grasp of these synergies.
+std::optional<std::string> newest_path(const storage::Store& store, const std::string& synergies);
 /// The newest synergy set. Throws InputError saying which command makes one when there is none.
 Stored<SynergySet> newest_synergies(const storage::Store& store);
-/// Grasps made from a synergy set with the given robot, scene and object.
-std::vector<Stored<Grasp>> grasps_of(const storage::Store& store, const std::string& synergies,
-                                     const nlohmann::json& world);
 
-/// The parameters that tie grasps and paths to a robot, a scene and an object.
+/// Robot, scene and object by what their files hold, not by how their paths are spelt.
+struct WorldKey {
+  std::string object;
+  std::set<std::string> files;  ///< SHA-256 of each
+  bool operator==(const WorldKey&) const = default;
+};
+/// Of a stored grasp, search or path.
+WorldKey world_key(const storage::Record& record);
+
+/// Grasps made from a synergy set with the given robot, scene and object.
+std::vector<Stored<Grasp>> grasps_of(const storage::Store& store, const std::string& synergies, const WorldKey& world);
+
+/// The parameters by which grasps and paths find their robot, scene and object again.
 nlohmann::json world_parameters(const std::string& robot, const std::string& scene, const std::string& object);
 /// Robot, scene and object that a stored object was made with.
 nlohmann::json parameters_of(const storage::Record& record);

@@ -38,6 +38,12 @@ std::vector<std::string> NamedWorld::hand_links() const {
   return names;
 }
 
+WorldKey NamedWorld::key() const {
+  WorldKey key{object, {}};
+  for (const auto& file : files) key.files.insert(file_sha256(file));
+  return key;
+}
+
 void require_same_joints(const SynergySet& synergies, const robot::RobotModel& hand) {
   if (synergies.joint_names == hand.joint_names()) return;
   std::string expected;

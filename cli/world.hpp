@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/json.hpp"
+#include "cli/stored.hpp"
 #include "core/synergies.hpp"
 #include "robot/robot_model.hpp"
 #include "robot/scene.hpp"
@@ -22,6 +23,7 @@ struct NamedWorld {
   std::vector<std::filesystem::path> files;  ///< hashed into the provenance
 
   std::vector<std::string> hand_links() const;
+  WorldKey key() const;
 
   Eigen::Isometry3d X_RO() const { return scene.X_WR.inverse() * scene.body(object).X_WB; }
 };

@@ -27,7 +27,7 @@ struct SearchSettings {
   double max_penetration = 0.001;  ///< m, of any hand point into object at the returned grasp
   double contact_tolerance = 0.001;  ///< m, a contact point closer than this to the surface touches
   double clearance_pregrasp = 0.01;  ///< m, least distance hand-object at the pre-grasp
-  double slack_bound = 0.3;          ///< rad, 2-norm of the slack of a synergy grasp
+  double slack_bound = 0.3;          ///< rad, 2-norm of a synergy grasp's slack (docs/deviations.md, 6)
   double min_distance_pose = 0.01;   ///< m, two returned grasps closer than this in palm position ...
   double min_distance_angle = 0.2;   ///< rad ... and this in palm orientation count as one
   int threads = 1;
@@ -46,7 +46,8 @@ struct SearchResult {
 using Accept = std::function<std::string(Grasp&)>;
 
 /// Grasps of the scene's object by one hand along the synergies of one group: NLopt over hand pose and the k synergy
-/// coordinates, then closing along the synergies until contact, finger by finger, then quality and pre-grasp.
+/// coordinates, then closing along the synergies until contact, finger by finger, then quality and pre-grasp
+/// (docs/deviations.md, 5).
 /// Deterministic for a seed whatever the thread count. hand: model rooted at the palm (load_hand).
 SearchResult search_grasps(const robot::RobotModel& hand, const robot::Scene& scene, const std::string& object,
                            const SynergyGroup& group, const SynergyBox& pre_grasp, const SearchSettings& settings,

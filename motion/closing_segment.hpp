@@ -35,8 +35,9 @@ struct ClosingSegment {
   std::optional<Eigen::VectorXd> invalid;  ///< [d] rad, a configuration that is in the way when there is none
 };
 
-/// The motion from pre-grasp to grasp: straight in joint space with arm and hand together; where that is not valid, the
-/// arm first and then the hand. q_pregrasp is known to be valid. hand: its index range in q.
+/// The motion from pre-grasp to grasp (docs/deviations.md, 16): straight in joint space with arm and hand together;
+/// where that is not valid, the arm first and then the hand. q_pregrasp is known to be valid. hand: its index range in
+/// q.
 ClosingSegment closing_segment(const Eigen::VectorXd& q_pregrasp, const Eigen::VectorXd& q_grasp,
                                const PlanningGroup& hand, const World& closing);
 

@@ -13,7 +13,8 @@ double distance(const Eigen::Ref<const Eigen::VectorXd>& weights, const Eigen::R
 /// Length of a path in that metric, rad. waypoints: [N x d], row = configuration; 0 when N < 2.
 double path_length(const Eigen::VectorXd& weights, const Eigen::MatrixXd& waypoints);
 
-/// sum over segments and joints of w_j |dq_j|, rad: the paper's "weighted sum of accumulated joint movements".
+/// sum over segments and joints of w_j |dq_j|, rad: the paper's "weighted sum of accumulated joint movements"
+/// (docs/deviations.md, 15).
 double path_length_l1(const Eigen::VectorXd& weights, const Eigen::MatrixXd& waypoints);
 
 }  // namespace opponens::motion

@@ -28,7 +28,7 @@ struct Shortcut {
 /// pairs of points between them are joined straight where that is shorter and valid, by World::first_invalid and, when
 /// given, World::confirm. Every motion of the result has been asked for, or is one of the given path, which must be
 /// valid; ends are kept. A shortcut is straight in the full space: it may leave the synergy boxes that the path
-/// followed (docs/algorithms/planner.md). Own random stream: same arguments, same path.
+/// followed (docs/algorithms/planner.md, docs/deviations.md, 17). Own random stream: same arguments, same path.
 Shortcut shortcut(const JointPath& path, const Eigen::VectorXd& weights, const World& world,
                   const ShortcutSettings& settings, std::uint64_t seed);
 

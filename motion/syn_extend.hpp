@@ -20,7 +20,7 @@ namespace opponens::motion {
 using Projection = std::function<Eigen::VectorXd(const Eigen::VectorXd& q_target)>;
 
 /// The paper's PROJECT: the arm part of q_target is kept, the hand part is projected onto the box and clipped to the
-/// limits, since a box may stick out of them. lower, upper: [d] rad; hand: index range in q.
+/// limits, since a box may stick out of them (docs/deviations.md, 13). lower, upper: [d] rad; hand: index range in q.
 Projection box_projection(const SynergyBox& box, const PlanningGroup& hand, const Eigen::VectorXd& lower,
                           const Eigen::VectorXd& upper);
 

@@ -33,7 +33,7 @@ struct PlannerSettings {
   Variant variant = Variant::synergy;
   double step = 0.4;                     ///< rad, epsilon of Algorithm 3 in the weighted metric
   double resolution = 0.02;              ///< rad, spacing of checked configurations: for edge_check's world
-  double full_space_probability = 0.05;  ///< share of targets that are not projected: keeps probabilistic completeness
+  double full_space_probability = 0.05;  ///< share of targets not projected (docs/deviations.md, 12)
   double minimum_step = 1e-9;            ///< rad, SYNEXTEND returns nothing below it
   std::int64_t max_iterations = 100000;  ///< passes of Algorithm 2's loop
   std::int64_t max_checks = 0;           ///< 0: unlimited; asked once per iteration, so one iteration may pass it
@@ -63,8 +63,8 @@ struct PlanQuery {
 /// Algorithm 2, PLANNER, with every valid goal rooted from the beginning. Targets are drawn uniformly within the limits
 /// from a stream of its own: same query, world, settings and seed, same path, byte for byte (unless time_limit or
 /// interrupted end it). When World::confirm is given, it is asked of each motion of the path found; a motion that fails
-/// is deleted from its graph with everything grown from it, and the search goes on. Goals outside the limits or in
-/// collision are left out; detail says how many.
+/// is deleted from its graph with everything grown from it, and the search goes on (docs/deviations.md, 14). Goals
+/// outside the limits or in collision are left out; detail says how many.
 PlanResult plan(const PlanQuery& query, const World& world, const PlannerSettings& settings, std::uint64_t seed);
 
 /// The same for the paper's query: the start tree follows the pre-grasp box, every goal tree its group's box. hand:

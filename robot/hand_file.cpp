@@ -76,6 +76,13 @@ std::vector<std::pair<NamedValue, NamedValue>> read_pairs(const YamlValue& file)
   return pairs;
 }
 
+std::vector<NamedValue> read_without_geometry(const YamlValue& file, UrdfSettings& settings) {
+  const std::optional<YamlValue> list = file.find("without_geometry");
+  std::vector<NamedValue> links = list ? read_names(*list) : std::vector<NamedValue>();
+  for (const NamedValue& link : links) settings.without_geometry.insert(link.name);
+  return links;
+}
+
 HandFile read_hand_file(const std::filesystem::path& hand_yaml) {
   const YamlValue file = YamlValue::load(hand_yaml);
   file.allow_keys({"urdf", "packages", "collision", "without_geometry", "palm_link", "joints", "tips", "contact_points",
@@ -84,6 +91,7 @@ HandFile read_hand_file(const std::filesystem::path& hand_yaml) {
   HandFile hand{.urdf = file.at("urdf").path(),
                 .urdf_settings = {},
                 .palm_link = {palm.text(), palm},
+                .without_geometry = {},
                 .joints = {},
                 .tips = {},
                 .contact_points = {},
@@ -91,9 +99,7 @@ HandFile read_hand_file(const std::filesystem::path& hand_yaml) {
                 .mapping = file.find("mapping")};
   hand.urdf_settings.packages = read_packages(file);
   hand.urdf_settings.geometry = read_link_geometry(file);
-  if (const auto list = file.find("without_geometry")) {
-    for (const std::string& link : list->texts()) hand.urdf_settings.without_geometry.insert(link);
-  }
+  hand.without_geometry = read_without_geometry(file, hand.urdf_settings);
   hand.joints = read_names(file.at("joints"));
   if (hand.joints.empty()) file.at("joints").fail("names no joint");
   hand.tips = read_points(file, "tips");

@@ -28,6 +28,7 @@ struct HandFile {
   std::filesystem::path urdf;
   UrdfSettings urdf_settings;
   NamedValue palm_link;
+  std::vector<NamedValue> without_geometry;  ///< links; their names are in urdf_settings too
   std::vector<NamedValue> joints;
   std::vector<NamedPoint> tips;
   std::vector<NamedPoint> contact_points;
@@ -42,6 +43,8 @@ HandFile read_hand_file(const std::filesystem::path& hand_yaml);
 PackagePaths read_packages(const YamlValue& file);
 LinkGeometry read_link_geometry(const YamlValue& file);
 std::vector<NamedValue> read_names(const YamlValue& list);
+/// The links of key without_geometry, whose names join the settings.
+std::vector<NamedValue> read_without_geometry(const YamlValue& file, UrdfSettings& settings);
 std::vector<std::pair<NamedValue, NamedValue>> read_pairs(const YamlValue& file);
 
 }  // namespace opponens::robot

@@ -73,8 +73,8 @@ struct Retargeted {
 /// where p_h is the human tip in the human palm frame, b the base of the finger it is measured from (the last joint
 /// origin on the way to the tip that no joint of the finger moves: the knuckle; for a thumb its first joint), l that
 /// finger's length (joint to joint from the base to the tip), and R = R_robot_human. Hand joints that are neither
-/// copied nor fitted stay at the position nearest to zero. One thread, deterministic. human: the parametric human hand
-/// scaled to the wearer. Failure: a channel, joint or tip is missing (not_found), a value is not finite
+/// copied nor fitted stay at the position nearest to zero. One thread, deterministic. human: the parametric human hand,
+/// of any size, since l_h divides it out (docs/algorithms/retarget.md). Failure: a channel, joint or tip is missing (not_found), a value is not finite
 /// (invalid_input), a fitted joint moves no mapped tip (degenerate), the solver did not meet its tolerance
 /// (not_converged).
 Result<Retargeted> retarget(const Demonstration& recording, const ChannelCalibration& calibration,

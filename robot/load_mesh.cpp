@@ -76,7 +76,6 @@ class Collector {
     auto mesh = std::make_shared<TriangleMesh>();
     mesh->source = file_.string();
     mesh->file = file_;
-    mesh->file = file_;
     mesh->vertices.resize(3, static_cast<Eigen::Index>(vertices_.size()));
     mesh->triangles.resize(3, static_cast<Eigen::Index>(triangles_.size()));
     for (std::size_t i = 0; i < vertices_.size(); ++i) {

@@ -26,6 +26,13 @@ int require_link(const RobotDescription& description, const NamedValue& link) {
   return *index;
 }
 
+/// A link named for nothing is a mistyped one, whose shapes would stay. Both: arm and hand may come in two URDFs.
+void require_links(const std::vector<NamedValue>& names, const RobotDescription& one, const RobotDescription& other) {
+  for (const NamedValue& link : names) {
+    if (!find_link(one, link.name)) require_link(other, link);
+  }
+}
+
 void require_actuated(const RobotDescription& description, const NamedValue& name) {
   const auto joint = std::find_if(description.joints.begin(), description.joints.end(),
                                   [&](const Joint& candidate) { return candidate.name == name.name; });
@@ -174,7 +181,8 @@ struct RobotFile {
   YamlValue file;
   YamlValue arm;
   HandFile hand;
-  UrdfSettings settings;  ///< of the arm; the hand's own packages are added for a joined URDF
+  std::vector<NamedValue> without_geometry;  ///< of both files
+  UrdfSettings settings;                     ///< of the arm; the hand's own packages are added for a joined URDF
 };
 
 /// One URDF holds arm and hand: the palm's parent is the tip of the arm.
@@ -184,6 +192,7 @@ RobotDescription load_joined(const RobotFile& robot, const std::filesystem::path
   settings.packages.directories.insert(more.directories.begin(), more.directories.end());
   settings.packages.roots.insert(settings.packages.roots.end(), more.roots.begin(), more.roots.end());
   RobotDescription description = read_urdf(urdf, settings);
+  require_links(robot.without_geometry, description, description);
   const int palm = require_link(description, robot.hand.palm_link);
   const int joint = description.links[static_cast<std::size_t>(palm)].joint;
   if (joint < 0) robot.hand.palm_link.where.fail("'" + robot.hand.palm_link.name + "' is the root: no arm carries it");
@@ -202,6 +211,7 @@ RobotDescription load_mounted(const RobotFile& robot, const std::filesystem::pat
   UrdfSettings hand_settings = robot.hand.urdf_settings;
   hand_settings.geometry = robot.settings.geometry;
   const RobotDescription hand = read_urdf(robot.hand.urdf, hand_settings);
+  require_links(robot.without_geometry, description, hand);
   attach(description, subtree(hand, require_link(hand, robot.hand.palm_link)), parent, mount.pose(), mount);
   return description;
 }
@@ -220,6 +230,7 @@ bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
 RobotDescription load_hand(const std::filesystem::path& hand_yaml) {
   const HandFile hand = read_hand_file(hand_yaml);
   const RobotDescription whole = read_urdf(hand.urdf, hand.urdf_settings);
+  require_links(hand.without_geometry, whole, whole);
   RobotDescription description = subtree(whole, require_link(whole, hand.palm_link));
   fill_hand(description, hand);
   description.weights = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(description.hand_joints.size()));
@@ -254,13 +265,11 @@ RobotDescription load_robot(const std::filesystem::path& robot_yaml) {
   file.allow_keys({"name", "arm", "hand", "mount", "collision", "without_geometry", "weights", "allowed_collisions"});
   const YamlValue arm = file.at("arm");
   arm.allow_keys({"urdf", "packages", "joints"});
-  RobotFile robot{file, arm, read_hand_file(file.at("hand").path()), {}};
+  RobotFile robot{file, arm, read_hand_file(file.at("hand").path()), {}, {}};
   robot.settings = {read_packages(arm), read_link_geometry(file), robot.hand.urdf_settings.without_geometry};
-  if (const auto list = file.find("without_geometry")) {
-    for (const std::string& link : list->texts()) robot.settings.without_geometry.insert(link);
-  }
+  robot.without_geometry = read_without_geometry(file, robot.settings);
+  for (const NamedValue& link : robot.hand.without_geometry) robot.without_geometry.push_back(link);
   robot.hand.urdf_settings.without_geometry = robot.settings.without_geometry;
-
   const std::filesystem::path urdf = arm.at("urdf").path();
   const std::optional<YamlValue> mount = file.find("mount");
   if (!mount && !same_file(urdf, robot.hand.urdf)) {

@@ -19,15 +19,6 @@ namespace {
 
 constexpr int kMaxSegments = 4096;
 
-/// Keys known and none twice: YAML leaves it open which of two equal keys counts.
-void check_keys(const YamlValue& value, std::initializer_list<const char*> keys) {
-  value.allow_keys(keys);
-  std::set<std::string> seen;
-  for (const auto& [key, entry] : value.entries()) {
-    if (!seen.insert(key).second) entry.fail("the key occurs twice");
-  }
-}
-
 double positive(const YamlValue& value) {
   const double number = value.number();
   if (number <= 0.0) value.fail("expected a positive number, found '" + value.text() + "'");
@@ -50,7 +41,7 @@ int segments_of(const YamlValue& value) {
 
 /// xyz (m) with rpy (rad, fixed axes) or quaternion (w, x, y, z), each optional.
 Eigen::Isometry3d pose_of(const YamlValue& value) {
-  check_keys(value, {"xyz", "rpy", "quaternion"});
+  value.allow_keys({"xyz", "rpy", "quaternion"});
   Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
   const std::optional<YamlValue> quaternion = value.find("quaternion");
   if (const auto rpy = value.find("rpy")) {
@@ -69,7 +60,7 @@ Eigen::Isometry3d pose_of(const YamlValue& value) {
 }
 
 Shape box_of(const YamlValue& value) {
-  check_keys(value, {"size"});
+  value.allow_keys({"size"});
   const YamlValue size = value.at("size");
   const Eigen::Vector3d edges = size.numbers(3);
   if (edges.minCoeff() <= 0.0) size.fail("expected three positive edge lengths");
@@ -77,12 +68,12 @@ Shape box_of(const YamlValue& value) {
 }
 
 Shape sphere_of(const YamlValue& value) {
-  check_keys(value, {"radius"});
+  value.allow_keys({"radius"});
   return Sphere{positive(value.at("radius"))};
 }
 
 Shape cylinder_of(const YamlValue& value) {
-  check_keys(value, {"radius", "length"});
+  value.allow_keys({"radius", "length"});
   return Cylinder{positive(value.at("radius")), positive(value.at("length"))};
 }
 
@@ -97,7 +88,7 @@ double unit_of(const YamlValue& value) {
 using Meshes = std::map<std::pair<std::string, std::array<double, 3>>, std::shared_ptr<const TriangleMesh>>;
 
 Shape mesh_of(const YamlValue& value, Meshes& known) {
-  check_keys(value, {"file", "unit", "scale"});
+  value.allow_keys({"file", "unit", "scale"});
   Eigen::Vector3d scale = Eigen::Vector3d::Ones();
   if (const auto written = value.find("scale")) {
     scale = written->is_sequence() ? Eigen::Vector3d(written->numbers(3))
@@ -119,7 +110,7 @@ Shape mesh_of(const YamlValue& value, Meshes& known) {
 }
 
 Shape revolution_of(const YamlValue& value) {
-  check_keys(value, {"profile", "segments"});
+  value.allow_keys({"profile", "segments"});
   const YamlValue written = value.at("profile");
   std::vector<std::pair<double, double>> profile;
   for (const YamlValue& point : written.items()) {
@@ -135,7 +126,7 @@ Shape revolution_of(const YamlValue& value) {
 }
 
 Geometry geometry_of(const YamlValue& value, Meshes& known) {
-  check_keys(value, {"box", "sphere", "cylinder", "mesh", "revolution", "pose"});
+  value.allow_keys({"box", "sphere", "cylinder", "mesh", "revolution", "pose"});
   std::vector<Shape> shapes;
   if (const auto v = value.find("box")) shapes.push_back(box_of(*v));
   if (const auto v = value.find("sphere")) shapes.push_back(sphere_of(*v));
@@ -152,7 +143,7 @@ Geometry geometry_of(const YamlValue& value, Meshes& known) {
 }
 
 SceneBody body_of(const YamlValue& value, Meshes& known) {
-  check_keys(value, {"name", "pose", "geometry"});
+  value.allow_keys({"name", "pose", "geometry"});
   SceneBody body;
   body.name = name_of(value.at("name"));
   if (const auto pose = value.find("pose")) body.X_WB = pose_of(*pose);
@@ -165,9 +156,6 @@ SceneBody body_of(const YamlValue& value, Meshes& known) {
 void read_start(const YamlValue& value, Scene& scene) {
   std::vector<double> positions;
   for (const auto& [joint, position] : value.entries()) {
-    for (const std::string& known : scene.start_joints) {
-      if (known == joint) position.fail("the joint occurs twice");
-    }
     scene.start_joints.push_back(joint);
     positions.push_back(position.number());
   }
@@ -178,7 +166,7 @@ void read_start(const YamlValue& value, Scene& scene) {
 
 Scene load_scene(const std::filesystem::path& scene_yaml) {
   const YamlValue root = YamlValue::load(scene_yaml);
-  check_keys(root, {"name", "robot_base", "bodies", "object", "support", "start"});
+  root.allow_keys({"name", "robot_base", "bodies", "object", "support", "start"});
   Scene scene;
   scene.name = name_of(root.at("name"));
   if (const auto base = root.find("robot_base")) scene.X_WR = pose_of(*base);

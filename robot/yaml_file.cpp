@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <set>
 #include <sstream>
 
 #include <yaml-cpp/yaml.h>
@@ -90,10 +91,12 @@ std::vector<YamlValue> YamlValue::items() const {
 std::vector<std::pair<std::string, YamlValue>> YamlValue::entries() const {
   if (!node_->IsMap()) fail("expected a map");
   std::vector<std::pair<std::string, YamlValue>> values;
+  std::set<std::string> seen;
   for (const auto& entry : *node_) {
     if (!entry.first.IsScalar()) fail("has a key that is not a text");
     const std::string key = entry.first.Scalar();
     values.emplace_back(key, YamlValue(file_, field_.empty() ? key : field_ + "." + key, entry.second));
+    if (!seen.insert(key).second) values.back().second.fail("the key occurs twice");
   }
   return values;
 }

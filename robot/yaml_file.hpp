@@ -31,8 +31,9 @@ class YamlValue {
 
   YamlValue at(const std::string& key) const;  ///< InputError when absent
   std::optional<YamlValue> find(const std::string& key) const;
-  std::vector<YamlValue> items() const;                            ///< InputError unless a sequence
-  std::vector<std::pair<std::string, YamlValue>> entries() const;  ///< in the file's order; InputError unless a map
+  std::vector<YamlValue> items() const;  ///< InputError unless a sequence
+  /// In the file's order; InputError unless a map, or when a key occurs twice: YAML leaves it open which one counts.
+  std::vector<std::pair<std::string, YamlValue>> entries() const;
 
   std::string text() const;                  ///< InputError unless a scalar
   double number() const;                     ///< InputError unless a finite number
@@ -43,7 +44,7 @@ class YamlValue {
   /// Environment variables ${NAME} expanded; a relative path is relative to the YAML file.
   std::filesystem::path path() const;
 
-  /// InputError when the map has a key that is not listed: a mistyped option must not be ignored.
+  /// InputError when the map has a key that is not listed, or one twice: a mistyped option must not be ignored.
   void allow_keys(std::initializer_list<const char*> keys) const;
 
   /// Throws InputError "file:line: field: message".

@@ -2,12 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "storage/hdf5_wrappers.hpp"
 
-#include <hdf5.h>
-
 #include <algorithm>
 #include <type_traits>
 #include <utility>
 
+#include "storage/hdf5_calls.hpp"
 #include "storage/store.hpp"
 
 namespace opponens::storage::hdf5 {
@@ -24,20 +23,6 @@ constexpr unsigned kDeflateLevel = 1;      // after shuffle, level 9 saves 2 % m
 constexpr const char* kInMemory = " (in memory)";
 constexpr std::size_t kMemoryStep = 1U << 20U;  // bytes by which a file in memory grows
 
-/// The first libhdf5 reason for a failure, e.g. "object 'x' doesn't exist".
-std::string reason() {
-  std::string text;
-  H5Ewalk2(
-      H5E_DEFAULT, H5E_WALK_UPWARD,
-      [](unsigned, const H5E_error2_t* error, void* out) -> herr_t {
-        auto& first = *static_cast<std::string*>(out);
-        if (first.empty() && error->desc != nullptr) first = error->desc;
-        return 0;
-      },
-      &text);
-  return text.empty() ? "no reason given" : text;
-}
-
 template <ssize_t (*get_name)(hid_t, char*, std::size_t)>
 std::string name_of(hid_t id) {
   const ssize_t length = id < 0 ? 0 : get_name(id, nullptr, 0);
@@ -47,30 +32,10 @@ std::string name_of(hid_t id) {
   return name;
 }
 
-[[noreturn]] void fail(hid_t near, const std::string& name, const std::string& what, const std::string& why) {
-  std::string file = name_of<H5Fget_name>(near);
-  if (file.ends_with(kInMemory)) file.resize(file.size() - std::string(kInMemory).size());
-  const std::string path = name_of<H5Iget_name>(near);
-  throw StorageError(file + ": " + path + (path.ends_with('/') || name.empty() ? "" : "/") + name + ": cannot " + what +
-                     ": " + why);
-}
-
-/// Passes a libhdf5 result on, or throws when it is negative. near: an object whose file and path name the place.
-template <typename T>
-T checked(T result, hid_t near, const std::string& name, const std::string& what) {
-  if (result < 0) fail(near, name, what, reason());
-  return result;
-}
-
 /// libhdf5 prints its error stack to stderr unless told not to.
 void silence() {
   static const bool done = H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr) >= 0;
   (void)done;
-}
-
-Handle properties(hid_t kind) {
-  Handle list(checked(H5Pcreate(kind), -1, "", "make a property list"), H5Pclose);
-  return list;
 }
 
 Handle memory_access() {
@@ -83,29 +48,9 @@ Handle memory_access() {
   return access;
 }
 
-/// Keeps all attributes in the object header, where they are cheap to read and their order is that of writing.
-void configure_object(const Handle& creation) {
-  checked(H5Pset_obj_track_times(creation.id(), false), -1, "", "switch off time stamps");
-  checked(H5Pset_attr_phase_change(creation.id(), 65535, 65535), -1, "", "choose attribute storage");
-}
-
-Handle string_type() {
-  Handle type(checked(H5Tcopy(H5T_C_S1), -1, "", "make a string type"), H5Tclose);
-  checked(H5Tset_size(type.id(), H5T_VARIABLE), -1, "", "make a string type");
-  checked(H5Tset_cset(type.id(), H5T_CSET_UTF8), -1, "", "make a string type");
-  return type;
-}
-
 Handle space_of(std::span<const hsize_t> shape) {
   const int rank = static_cast<int>(shape.size());
   return {checked(H5Screate_simple(rank, shape.data(), nullptr), -1, "", "make a dataspace"), H5Sclose};
-}
-
-std::vector<hsize_t> shape_of(const Handle& space, hid_t near, const std::string& name) {
-  const int rank = checked(H5Sget_simple_extent_ndims(space.id()), near, name, "read the shape");
-  std::vector<hsize_t> shape(static_cast<std::size_t>(rank));
-  checked(H5Sget_simple_extent_dims(space.id(), shape.data(), nullptr), near, name, "read the shape");
-  return shape;
 }
 
 std::vector<const char*> pointers(const std::vector<std::string>& values) {
@@ -113,16 +58,6 @@ std::vector<const char*> pointers(const std::vector<std::string>& values) {
   result.reserve(values.size());
   for (const auto& value : values) result.push_back(value.c_str());
   return result;
-}
-
-void write_raw_attribute(const Handle& object, const std::string& name, hid_t type, const void* data) {
-  const Handle creation = properties(H5P_ATTRIBUTE_CREATE);
-  checked(H5Pset_char_encoding(creation.id(), H5T_CSET_UTF8), -1, "", "choose UTF-8 names");
-  const Handle space(checked(H5Screate(H5S_SCALAR), -1, "", "make a dataspace"), H5Sclose);
-  const Handle attribute(checked(H5Acreate2(object.id(), name.c_str(), type, space.id(), creation.id(), H5P_DEFAULT),
-                                 object.id(), name, "create the attribute"),
-                         H5Aclose);
-  checked(H5Awrite(attribute.id(), type, data), object.id(), name, "write the attribute");
 }
 
 /// Shuffle and deflate for what is worth it, in chunks of whole rows.
@@ -154,13 +89,55 @@ void write_raw_dataset(const Handle& group, const std::string& name, hid_t store
           "write the dataset");
 }
 
-Handle open_attribute(const Handle& object, const std::string& name) {
-  return {checked(H5Aopen(object.id(), name.c_str(), H5P_DEFAULT), object.id(), name, "open the attribute"), H5Aclose};
+}  // namespace
+
+std::string reason() {
+  std::string text;
+  H5Ewalk2(
+      H5E_DEFAULT, H5E_WALK_UPWARD,
+      [](unsigned, const H5E_error2_t* error, void* out) -> herr_t {
+        auto& first = *static_cast<std::string*>(out);
+        if (first.empty() && error->desc != nullptr) first = error->desc;
+        return 0;
+      },
+      &text);
+  return text.empty() ? "no reason given" : text;
+}
+
+void fail(hid_t near, const std::string& name, const std::string& what, const std::string& why) {
+  std::string file = name_of<H5Fget_name>(near);
+  if (file.ends_with(kInMemory)) file.resize(file.size() - std::string(kInMemory).size());
+  const std::string path = name_of<H5Iget_name>(near);
+  throw StorageError(file + ": " + path + (path.ends_with('/') || name.empty() ? "" : "/") + name + ": cannot " + what +
+                     ": " + why);
+}
+
+Handle properties(hid_t kind) {
+  Handle list(checked(H5Pcreate(kind), -1, "", "make a property list"), H5Pclose);
+  return list;
+}
+
+void configure_object(const Handle& creation) {
+  checked(H5Pset_obj_track_times(creation.id(), false), -1, "", "switch off time stamps");
+  checked(H5Pset_attr_phase_change(creation.id(), 65535, 65535), -1, "", "choose attribute storage");
+}
+
+Handle string_type() {
+  Handle type(checked(H5Tcopy(H5T_C_S1), -1, "", "make a string type"), H5Tclose);
+  checked(H5Tset_size(type.id(), H5T_VARIABLE), -1, "", "make a string type");
+  checked(H5Tset_cset(type.id(), H5T_CSET_UTF8), -1, "", "make a string type");
+  return type;
+}
+
+std::vector<hsize_t> shape_of(const Handle& space, hid_t near, const std::string& name) {
+  const int rank = checked(H5Sget_simple_extent_ndims(space.id()), near, name, "read the shape");
+  std::vector<hsize_t> shape(static_cast<std::size_t>(rank));
+  checked(H5Sget_simple_extent_dims(space.id(), shape.data(), nullptr), near, name, "read the shape");
+  return shape;
 }
 
 bool is_text(hid_t type) { return H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) > 0; }
 
-/// Copies what libhdf5 allocated for variable-length strings, and gives it back.
 std::vector<std::string> take_strings(std::vector<char*>& raw, const Handle& type, const Handle& space) {
   std::vector<std::string> values;
   values.reserve(raw.size());
@@ -168,21 +145,6 @@ std::vector<std::string> take_strings(std::vector<char*>& raw, const Handle& typ
   if (!raw.empty()) H5Dvlen_reclaim(type.id(), space.id(), H5P_DEFAULT, raw.data());
   return values;
 }
-
-template <typename T>
-T attribute_number(const Handle& object, const std::string& name, H5T_class_t kind, hid_t type) {
-  const Handle attribute = open_attribute(object, name);
-  const Handle stored(checked(H5Aget_type(attribute.id()), object.id(), name, "read the type"), H5Tclose);
-  const Handle space(checked(H5Aget_space(attribute.id()), object.id(), name, "read the shape"), H5Sclose);
-  if (H5Tget_class(stored.id()) != kind || !shape_of(space, object.id(), name).empty()) {
-    fail(object.id(), name, "read the attribute", "it is not a single number of the expected type");
-  }
-  T value{};
-  checked(H5Aread(attribute.id(), type, &value), object.id(), name, "read the attribute");
-  return value;
-}
-
-}  // namespace
 
 Handle::~Handle() {
   if (id_ >= 0) close_(id_);
@@ -242,64 +204,6 @@ std::vector<std::string> links(const Handle& group) {
           "list the group");
   std::sort(names.begin(), names.end());
   return names;
-}
-
-std::vector<std::string> attributes(const Handle& object) {
-  std::vector<std::string> names;
-  const auto collect = [](hid_t, const char* name, const H5A_info_t*, void* out) -> herr_t {
-    static_cast<std::vector<std::string>*>(out)->emplace_back(name);
-    return 0;
-  };
-  checked(H5Aiterate2(object.id(), H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, collect, &names), object.id(), "",
-          "list the attributes");
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
-void write_attribute(const Handle& object, const std::string& name, double value) {
-  write_raw_attribute(object, name, H5T_IEEE_F64LE, &value);
-}
-void write_attribute(const Handle& object, const std::string& name, std::int64_t value) {
-  write_raw_attribute(object, name, H5T_STD_I64LE, &value);
-}
-void write_attribute(const Handle& object, const std::string& name, std::uint64_t value) {
-  write_raw_attribute(object, name, H5T_STD_U64LE, &value);
-}
-void write_attribute(const Handle& object, const std::string& name, const std::string& value) {
-  const char* text = value.c_str();
-  write_raw_attribute(object, name, string_type().id(), static_cast<const void*>(&text));
-}
-
-Field read_attribute(const Handle& object, const std::string& name) {
-  const Handle attribute = open_attribute(object, name);
-  const Handle type(checked(H5Aget_type(attribute.id()), object.id(), name, "read the type"), H5Tclose);
-  switch (H5Tget_class(type.id())) {
-    case H5T_FLOAT:
-      return attribute_number<double>(object, name, H5T_FLOAT, H5T_NATIVE_DOUBLE);
-    case H5T_INTEGER:
-      return read_integer(object, name);
-    default:
-      return read_string(object, name);
-  }
-}
-
-std::int64_t read_integer(const Handle& object, const std::string& name) {
-  return attribute_number<std::int64_t>(object, name, H5T_INTEGER, H5T_NATIVE_INT64);
-}
-std::uint64_t read_unsigned(const Handle& object, const std::string& name) {
-  return attribute_number<std::uint64_t>(object, name, H5T_INTEGER, H5T_NATIVE_UINT64);
-}
-std::string read_string(const Handle& object, const std::string& name) {
-  const Handle attribute = open_attribute(object, name);
-  const Handle stored(checked(H5Aget_type(attribute.id()), object.id(), name, "read the type"), H5Tclose);
-  const Handle space(checked(H5Aget_space(attribute.id()), object.id(), name, "read the shape"), H5Sclose);
-  if (!is_text(stored.id()) || !shape_of(space, object.id(), name).empty()) {
-    fail(object.id(), name, "read the attribute", "it is not a text");
-  }
-  const Handle type = string_type();
-  std::vector<char*> raw(1, nullptr);
-  checked(H5Aread(attribute.id(), type.id(), raw.data()), object.id(), name, "read the attribute");
-  return take_strings(raw, type, space).front();
 }
 
 void write_dataset(const Handle& group, const std::string& name, const Eigen::VectorXd& values) {

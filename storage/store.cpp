@@ -13,6 +13,7 @@
 #include "storage/batch_file.hpp"
 #include "storage/index.hpp"
 #include "storage/posix_file.hpp"
+#include "storage/production_order.hpp"
 
 namespace opponens::storage {
 namespace {
@@ -121,7 +122,8 @@ void Store::refresh() {
   }
   index_.clear();
   by_id_.clear();
-  damage_.clear();
+  missing_.clear();
+  unreadable_.clear();
   bool stale = !stored;
   for (const auto& file : files) {
     const auto found = known.find(file);
@@ -136,22 +138,23 @@ void Store::refresh() {
     } catch (const NewerSchemaError&) {
       throw;
     } catch (const StorageError& error) {
-      damage_.emplace_back(error.what());
+      unreadable_.emplace_back(error.what());
     }
   }
   for (const auto& [file, entries] : known) {
-    damage_.push_back((directory_ / file).string() + ": the file is missing; the index says that it held " +
-                      std::to_string(entries.size()) + " object(s)");
+    missing_.push_back((directory_ / file).string() + ": the file is missing; the index says that it held " +
+                       std::to_string(entries.size()) + " object(s)");
   }
-  if (!stale || !damage_.empty()) return;
+  if (!stale || !missing_.empty() || !unreadable_.empty()) return;
   const DirectoryLock lock(directory_, DirectoryLock::Wait::no);
   if (lock.held()) save_index(directory_, index_);
 }
 
 void Store::require_undamaged() const {
-  if (damage_.empty()) return;
-  const std::string more = damage_.size() > 1 ? " (and " + std::to_string(damage_.size() - 1) + " more)" : "";
-  throw StorageError(damage_.front() + more);
+  const std::size_t count = unreadable_.size() + missing_.size();
+  if (count == 0) return;
+  const std::string more = count > 1 ? " (and " + std::to_string(count - 1) + " more)" : "";
+  throw StorageError((unreadable_.empty() ? missing_ : unreadable_).front() + more);
 }
 
 std::vector<std::string> Store::commit(const std::vector<Record>& records) {
@@ -169,6 +172,10 @@ std::vector<std::string> Store::commit(const std::vector<Record>& records) {
   std::set<std::string> seen;
   for (std::size_t i = 0; i < records.size(); ++i) {
     if (!by_id_.contains(ids[i]) && seen.insert(ids[i]).second) fresh.push_back(i);
+  }
+  if (std::any_of(ids.begin(), ids.end(), [&](const std::string& id) { return by_id_.contains(id); })) {
+    // Before the files: should writing them fail, the line names what is not there and says nothing.
+    log_run(production_line(ids, fresh.empty() ? index_.back().id : ids[fresh.back()]));
   }
   if (fresh.empty()) return ids;
   write_batches(records, ids, fresh);
@@ -248,11 +255,15 @@ std::vector<IndexEntry> Store::list(const std::string& kind) const {
   return entries;
 }
 
+std::vector<IndexEntry> Store::list_as_produced(const std::string& kind) const {
+  const fs::path log = directory_ / kRunLog;
+  std::vector<IndexEntry> entries = in_order_of_production(list(), fs::exists(log) ? read_file(log) : std::string());
+  if (!kind.empty()) std::erase_if(entries, [&](const IndexEntry& entry) { return entry.kind != kind; });
+  return entries;
+}
+
 std::vector<std::string> Store::check() const {
-  std::vector<std::string> sentences;
-  for (const auto& sentence : damage_) {
-    if (sentence.find("the file is missing") != std::string::npos) sentences.push_back(sentence);
-  }
+  std::vector<std::string> sentences = missing_;  // what cannot be read is read again below
   for (const auto& name : directory_entries(directory_)) {
     if (!name.ends_with(".h5") || name.starts_with(kTemporaryPrefix)) continue;
     const std::string path = (directory_ / name).string();

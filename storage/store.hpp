@@ -45,7 +45,8 @@ class Store {
   Store& operator=(Store&&) noexcept;
 
   /// Writes records as one file (several of bounded size when large): temporary file, fsync, rename, directory fsync.
-  /// Returns their ids in order. A record whose id is present already is not written again. When anything fails the
+  /// Returns their ids in order. A record whose id is present already is not written again; a line of the run log then
+  /// says that it was made again. When anything fails the
   /// store is as it was. Throws std::invalid_argument for a record that cannot be stored (see check_storable),
   /// InputError when the disk is full or the directory cannot be written.
   std::vector<std::string> commit(const std::vector<Record>& records);
@@ -56,6 +57,10 @@ class Store {
 
   /// Entries of a kind (all when empty), in order of commit, as of opening or this object's last commit.
   std::vector<IndexEntry> list(const std::string& kind = "") const;
+
+  /// The same in the order in which they were made last: what a later commit made again, byte for byte, is not written
+  /// again but counts as that commit's. Follows the run log; where that is missing or cut off, the order of commit.
+  std::vector<IndexEntry> list_as_produced(const std::string& kind = "") const;
 
   /// Reads and checks everything; returns one sentence per damaged file or object.
   std::vector<std::string> check() const;
@@ -77,7 +82,8 @@ class Store {
   std::filesystem::path directory_;
   std::vector<IndexEntry> index_;              // order of commit
   std::map<std::string, std::size_t> by_id_;   // id -> position in index_
-  std::vector<std::string> damage_;            // sentences, one per file that is missing or cannot be read
+  std::vector<std::string> missing_;           // sentences, one per file that the index names and that is gone
+  std::vector<std::string> unreadable_;        // sentences, one per file that cannot be read
   mutable std::unique_ptr<BatchReader> last_;  // the file read last
 };
 

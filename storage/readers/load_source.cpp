@@ -172,7 +172,6 @@ void read_processing(const Section& root, SourceDescription& source) {
       calibrate.fail(calibrate.at("by"), "calibrate.by", "a label that this source has");
     }
   }
-  if (root.has("hand_length")) source.hand_length = root.positive("hand_length");
 }
 
 }  // namespace
@@ -187,13 +186,13 @@ const std::vector<std::string>& human_hand_channels() {
 SourceDescription load_source(const std::filesystem::path& yaml) {
   const Section root(parse(yaml), yaml, "",
                      {"name", "origin", "recordings", "labels", "time", "unit", "channels", "ignore", "resample",
-                      "trim", "calibrate", "hand_length"});
+                      "trim", "calibrate"});
   SourceDescription source;
   source.name = root.text("name");
   source.origin = choice<Origin>(root, "origin", {{"recorded", Origin::recorded}, {"simulated", Origin::simulated}});
   read_recordings(root, source);
   source.labels = root.text_map("labels");
-  for (const auto* reserved : {"source", "calibration", "hand_length"}) {
+  for (const auto* reserved : {"source", "calibration"}) {
     if (source.labels.contains(reserved))
       root.fail(root.at("labels"), "labels", "no label '" + std::string(reserved) + "': it is set by the reader");
   }

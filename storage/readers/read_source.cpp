@@ -22,6 +22,7 @@ namespace fs = std::filesystem;
 struct IndexRow {
   fs::path file;
   fs::path index;
+  std::string index_sha256;
   long line = 0;
   std::map<std::string, std::string> labels;
 };
@@ -34,10 +35,11 @@ std::vector<IndexRow> read_index(const fs::path& root, const SourceDescription& 
   const std::size_t file_column = csv.column(source.file_column, "file column");
   std::map<std::string, std::size_t> label_columns;
   for (const auto& [label, column] : source.labels) label_columns[label] = csv.column(column, "label column");
+  const std::string hash = sha256(text);
   std::vector<IndexRow> rows;
   while (csv.next()) {
     if (csv.cell(file_column).empty()) csv.fail(file_column, "the name of a recording's file");
-    IndexRow row{root / source.folder / fs::path(csv.cell(file_column)), path, csv.line(), {}};
+    IndexRow row{root / source.folder / fs::path(csv.cell(file_column)), path, hash, csv.line(), {}};
     std::error_code error;
     if (!fs::is_regular_file(row.file, error)) {
       csv.fail(file_column, "a file that exists (" + row.file.string() + " does not)");
@@ -131,12 +133,19 @@ std::map<std::string, std::string> labels_of(const IndexRow& row, const SourceDe
   std::map<std::string, std::string> labels = row.labels;
   labels["source"] = source.name;
   if (source.calibrate_by) labels["calibration"] = "range by " + *source.calibrate_by;
-  if (source.hand_length) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.4g", *source.hand_length);
-    labels["hand_length"] = text;
-  }
   return labels;
+}
+
+/// A time in milliseconds taken for seconds would ask for a thousand times the samples, or for more than memory holds.
+void require_resamplable(const Samples& samples, double rate, const fs::path& file) {
+  const double end = samples.time[samples.time.size() - 1];
+  if ((end - samples.time[0]) * rate <= kMaxSamples) return;
+  char value[40];
+  std::snprintf(value, sizeof value, "%.10g s", end);
+  char limit[120];
+  std::snprintf(limit, sizeof limit, "at most %.3g samples at resample.rate %.4g Hz; is the time in seconds?",
+                kMaxSamples, rate);
+  throw_input(file, 0, "the last time", value, limit);
 }
 
 void read_recording(const IndexRow& row, const SourceDescription& source, SourceReading& reading) {
@@ -146,14 +155,17 @@ void read_recording(const IndexRow& row, const SourceDescription& source, Source
   const double start = samples.time[0];
   const double end = samples.time[rows - 1];
   const Eigen::VectorXd steps = samples.time.tail(rows - 1) - samples.time.head(rows - 1);
-  if (source.resample_rate) samples = resample(samples, *source.resample_rate);
+  if (source.resample_rate) {
+    require_resamplable(samples, *source.resample_rate, row.file);
+    samples = resample(samples, *source.resample_rate);
+  }
   if (source.trim) samples = trim(samples, *source.trim);
   const Eigen::Index kept = samples.time.size();
   if (kept < 2) {
     throw_input(row.file, 0, "number of samples after resampling and trimming", std::to_string(kept),
                 "at least 2: the hand moves faster than trim.speed for longer than that");
   }
-  FileReport report{row.file, row.file.stem().string(), sha256(text)};
+  FileReport report{row.file, row.file.stem().string(), sha256(text), row.index.filename().string(), row.index_sha256};
   report.rows = static_cast<int>(rows);
   report.samples = static_cast<int>(kept);
   report.duration = end - start;

@@ -17,7 +17,7 @@ struct Samples {
   Eigen::MatrixXd q;     ///< [T x n] rad
 };
 
-/// Linear interpolation at time[0] + i / rate, up to the last sample.
+/// Linear interpolation at time[0] + i / rate, up to the last sample. The caller bounds how many that are.
 Samples resample(const Samples& samples, double rate);
 
 /// The samples from the first to the last at which the hand moves (TrimRule); none when it never does.

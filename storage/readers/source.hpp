@@ -48,7 +48,6 @@ struct SourceDescription {
   std::optional<double> resample_rate;       ///< Hz
   std::optional<TrimRule> trim;
   std::optional<std::string> calibrate_by;  ///< zero unknown: calibrate range to range per value of this label
-  std::optional<double> hand_length;        ///< m, wearer's, wrist to tip of the middle finger
 };
 
 /// Throws InputError naming file, line, field, value and expectation.
@@ -59,6 +58,8 @@ struct FileReport {
   std::filesystem::path file;
   std::string id;              ///< of its demonstration
   std::string sha256;          ///< of the file's bytes
+  std::string index;           ///< name of the index file that gave its labels
+  std::string index_sha256;    ///< of that file's bytes
   int rows = 0;                ///< in the file
   int samples = 0;             ///< in the demonstration
   double duration = 0.0;       ///< s, in the file
@@ -68,6 +69,9 @@ struct FileReport {
   double trimmed_end = 0.0;    ///< s cut off after it
 };
 
+/// Of one recording, after resampling: a day at 100 Hz. A longer one is a time column in another unit than seconds.
+inline constexpr double kMaxSamples = 1e7;
+
 struct SourceReading {
   std::vector<Demonstration> demonstrations;  ///< in the order of paths and of the index
   std::vector<FileReport> files;              ///< one per demonstration
@@ -76,8 +80,8 @@ struct SourceReading {
 /// Reads recordings. A path is a directory laid out as the description says, or one recording inside such a directory.
 /// Time is linearly resampled when the description says so (no low-pass filter: a rate above the wanted one aliases),
 /// trimmed, and then counted from the first sample kept. Labels: those of the description, "source", and, when the
-/// description calibrates, "calibration" = "range by LABEL"; "hand_length" (m) when it is given. Throws InputError with
-/// file, line, field, value and expectation.
+/// description calibrates, "calibration" = "range by LABEL". Throws InputError with file, line, field, value and
+/// expectation; also when a recording would have more than kMaxSamples at the wanted rate.
 SourceReading read_source(const std::vector<std::filesystem::path>& paths, const SourceDescription& source);
 
 struct ChannelSummary {

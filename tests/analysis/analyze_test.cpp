@@ -179,6 +179,14 @@ TEST(Analyze, FailuresNameRecordingOrGroup) {
   EXPECT_NE(detail(analyze(broken, quick()), FailureCode::degenerate).find(broken[3].id), std::string::npos);
   EXPECT_EQ(detail(analyze({recordings()[185]}, quick()), FailureCode::invalid_input), "no movements to analyze");
 
+  broken = some;
+  broken.push_back(some[1]);
+  broken.back().q_h.array() += 0.01;  // other samples under the same name are no second recording either
+  EXPECT_NE(detail(analyze(broken, quick()), FailureCode::invalid_input).find(some[1].id + " is given twice"),
+            std::string::npos);
+  broken.back().labels["source"] = "another";  // two sources may use one name
+  EXPECT_TRUE(analyze(broken, quick()));
+
   // A group with fewer samples than joints, although its one recording can be split.
   settings = quick();
   settings.min_window = 5;

@@ -28,6 +28,26 @@ TEST(HumanLikeness, HandComputed) {
   EXPECT_NEAR(*human_likeness(path({{0, 0}, {1, 1}}), kReference), 100.0 * std::sqrt(5.0 / 2.0) / 2.0, 1e-12);
 }
 
+TEST(HumanLikeness, FreeMotionsOfAnyOrderAreTheReference) {
+  Rng rng = stream(12, "free");
+  std::vector<Demonstration> recordings;
+  for (int i = 0; i < 4; ++i) {
+    recordings.push_back(test::recording(std::to_string(i), test::normal_matrix(30, 2, rng)));
+    recordings.back().labels["kind"] = i == 1 ? "grasp" : "free";
+  }
+  const LikenessReference found =
+      free_motion_reference({&recordings[0], &recordings[1], &recordings[2], &recordings[3]}).value();
+  EXPECT_EQ(found.name, "free finger motions");
+  Eigen::MatrixXd free(90, 2);
+  free << recordings[0].q_h, recordings[2].q_h, recordings[3].q_h;
+  EXPECT_TRUE(found.covariance.isApprox(moments(free).covariance, 1e-12));
+  recordings[3].origin = Origin::simulated;
+  const LikenessReference other = free_motion_reference({&recordings[3], &recordings[0], &recordings[2]}).value();
+  EXPECT_EQ(other.name, "free finger motions (simulated)");
+  EXPECT_TRUE(other.covariance == found.covariance);
+  EXPECT_FALSE(free_motion_reference({&recordings[1]}));
+}
+
 TEST(HumanLikeness, Null) {
   EXPECT_FALSE(human_likeness(path({{1, 1}, {1, 1}}), kReference));
   EXPECT_FALSE(human_likeness(path({{1, 1}}), kReference));

@@ -6,6 +6,7 @@
 #include <iostream>
 
 #include <gtest/gtest.h>
+#include <boost/math/distributions/beta.hpp>
 #include <boost/math/distributions/binomial.hpp>
 
 #include "analysis/pca.hpp"
@@ -32,14 +33,24 @@ TEST(BasicLogitInterval, ReflectsAndStaysInside) {
   // The 5th and 195th of 199: (199 + 1) 0.025 = 5.
   EXPECT_NEAR(logit(found.low), 2 * logit(0.93) - logit(replicates[194]), 1e-12);
   EXPECT_NEAR(logit(found.high), 2 * logit(0.93) - logit(replicates[4]), 1e-12);
-  const Interval extreme = basic_logit_interval(0.9999, {0.5, 0.6, 1.0, 1.0}, 0.95);
-  EXPECT_GE(extreme.low, 0.0);
-  EXPECT_LE(extreme.high, 1.0);
   const Interval certain = basic_logit_interval(1.0, {1.0, 1.0}, 0.95);
   EXPECT_EQ(certain.low, 1.0);
   EXPECT_EQ(certain.high, 1.0);
   EXPECT_THROW(basic_logit_interval(0.5, {0.5}, 0.95), std::invalid_argument);
   EXPECT_THROW(basic_logit_interval(0.5, {0.5, 0.5}, 95), std::invalid_argument);
+}
+
+TEST(BasicLogitInterval, ReplicatesWithoutALogitAreNotReflected) {
+  // A joint that moved in one recording of many: a third of the resamples lack it, and their share is 1. Reflected, the
+  // low end would be near 0.
+  std::vector<double> replicates(200, 1.0);
+  for (int i = 0; i < 130; ++i) replicates[static_cast<std::size_t>(i)] = 1.0 - 1e-5 * (1 + i % 3);
+  const Interval found = basic_logit_interval(1.0 - 1e-5, replicates, 0.95);
+  EXPECT_DOUBLE_EQ(found.low, 1.0 - 3e-5);
+  EXPECT_EQ(found.high, 1.0);
+  const Interval stretched = basic_logit_interval(0.99, {0.995, 0.999, 1.0, 1.0}, 0.95);
+  EXPECT_EQ(stretched.low, 0.99);
+  EXPECT_EQ(stretched.high, 1.0);
 }
 
 TEST(Bootstrap, ResamplesWholeClustersWithReplacement) {
@@ -111,6 +122,92 @@ TEST(CumulativeVarianceInterval, CoversAsFoundByIndependentSimulation) {
             << " hold the true share\n";
   EXPECT_TRUE(accepted(basic)) << basic;
   EXPECT_FALSE(accepted(percentile)) << percentile;
+}
+
+/// Low and high end, as probabilities under the two beta distributions of Clopper and Pearson, must be the 2.5 % tails.
+/// An end is the 500th of 19,999 replicates, so its probability is Beta(500, 19500): two-sided bound at 1e-4.
+void expect_clopper_pearson(int successes, int clusters, const Interval& found) {
+  const boost::math::beta_distribution<> tail(500, 19500);
+  const auto in_tail = [&](double p) {
+    return p >= boost::math::quantile(tail, 0.5e-4) &&
+           p <= boost::math::quantile(boost::math::complement(tail, 0.5e-4));
+  };
+  const int failures = clusters - successes;
+  EXPECT_TRUE(in_tail(boost::math::cdf(boost::math::beta_distribution<>(successes, failures + 1), found.low)));
+  if (failures == 0) {
+    EXPECT_EQ(found.high, 1.0);
+    return;
+  }
+  const boost::math::beta_distribution<> above(successes + 1, failures);
+  EXPECT_TRUE(in_tail(boost::math::cdf(boost::math::complement(above, found.high))));
+}
+
+TEST(RatioInterval, WholeClustersInOrOutGiveClopperAndPearson) {
+  constexpr int kAll = 20;
+  for (const int successes : {20, 17, 10}) {
+    SCOPED_TRACE(successes);
+    Rng rng = test::numbered_stream(42, "in or out/", successes);
+    Eigen::VectorXd inside = Eigen::VectorXd::Zero(kAll);
+    inside.head(successes).setConstant(50.0);
+    expect_clopper_pearson(successes, kAll,
+                           ratio_interval(inside, Eigen::VectorXd::Constant(kAll, 50.0), 19999, 0.95, rng));
+  }
+  Rng rng = stream(42, "bad");
+  EXPECT_THROW(ratio_interval(Eigen::Vector2d(1, 3), Eigen::Vector2d(2, 2), 99, 0.95, rng), std::invalid_argument);
+  EXPECT_THROW(ratio_interval(Eigen::Vector2d(0, 0), Eigen::Vector2d(2, 0), 99, 0.95, rng), std::invalid_argument);
+}
+
+/// How often each kind of interval holds the truth, of kDataSets.
+struct Held {
+  int found = 0;
+  int percentile = 0;
+  int reflected = 0;  ///< basic on the logit
+};
+
+/// Clusters of 100 samples. Most are wholly inside; with the given probability one is not, and has each sample outside
+/// with a probability that is uniform in [0, 0.2].
+Held held_by_intervals(int clusters, double imperfect, int number) {
+  const double truth = 1.0 - 0.1 * imperfect;
+  const Eigen::VectorXd total = Eigen::VectorXd::Constant(clusters, 100.0);
+  const auto holds = [&](const Interval& interval) { return interval.low <= truth && truth <= interval.high ? 1 : 0; };
+  Held held;
+  for (int i = 0; i < kDataSets; ++i) {
+    Rng rng = test::numbered_stream(43, "few imperfect/" + std::to_string(number) + "/", i);
+    Eigen::VectorXd inside = total;
+    for (double& count : inside) {
+      if (rng.uniform() >= imperfect) continue;
+      const double outside = rng.uniform(0.0, 0.2);
+      for (int sample = 0; sample < 100; ++sample) count -= rng.uniform() < outside ? 1.0 : 0.0;
+    }
+    held.found += holds(ratio_interval(inside, total, kReplicates, 0.95, rng));
+    std::vector<double> shares;
+    for (int replicate = 0; replicate < kReplicates; ++replicate) {
+      const Eigen::VectorXd counts = resample_counts(clusters, rng).cast<double>();
+      shares.push_back(counts.dot(inside) / counts.dot(total));
+    }
+    held.percentile += holds(percentile_interval(shares, 0.95));
+    held.reflected += holds(basic_logit_interval(inside.sum() / total.sum(), shares, 0.95));
+  }
+  return held;
+}
+
+TEST(RatioInterval, HoldsItsLevelWhenFewClustersAreImperfect) {
+  // Null: an interval that holds the truth with probability 0.95 or more; then the count is at least what
+  // Binomial(1000, 0.95) gives, one-sided exact bound at 1e-4. Resampling must be found out.
+  const int least = static_cast<int>(boost::math::quantile(boost::math::binomial(kDataSets, 0.95), 1e-4));
+  int number = 0;
+  for (const int clusters : {6, 12, 36}) {
+    for (const double imperfect : {0.08, 0.3}) {
+      const Held held = held_by_intervals(clusters, imperfect, number++);
+      std::cout << clusters << " clusters, " << 100 * imperfect << " % imperfect: of " << kDataSets << " intervals "
+                << held.found << " hold the share, percentile " << held.percentile << ", basic on the logit "
+                << held.reflected << "\n";
+      EXPECT_GE(held.found, least);
+      if (imperfect > 0.1 && clusters == 36) continue;  // enough imperfect ones for any kind
+      EXPECT_LT(held.percentile, least);
+      EXPECT_LT(held.reflected, least);
+    }
+  }
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <boost/math/distributions/binomial.hpp>
 
 #include "analysis/phase_transition.hpp"
 #include "tests/analysis/support.hpp"
@@ -23,7 +24,16 @@ struct Errors {
 struct Both {
   Errors likeness;
   Errors changepoint;
+  int changepoint_nearer = 0;  ///< recordings
+  int likeness_nearer = 0;
 };
+
+/// Sign test: were the two rules equally good, the recordings in which a rule is the nearer one (ties left out) would
+/// be Binomial(n, 1/2). One-sided exact bound at 1e-4.
+bool nearer(int wins, int losses) {
+  const boost::math::binomial even(wins + losses, 0.5);
+  return wins > boost::math::quantile(boost::math::complement(even, 1e-4));
+}
 
 Both measure(const std::vector<Demonstration>& recordings) {
   Both both;
@@ -31,13 +41,16 @@ Both measure(const std::vector<Demonstration>& recordings) {
   for (const Demonstration& recording : recordings) {
     const TransitionCurves curves = transition_curves(recording, {}).value();
     const double duration = recording.time[recording.time.size() - 1];
-    const auto add = [&](TransitionRule rule, Errors& errors) {
+    const auto add = [&](TransitionRule rule, Errors& errors) -> double {
       const double error = (transition(recording, curves, rule).time_s - *recording.known_transition) / duration;
       errors.mean += error / count;
       errors.absolute += std::abs(error) / count;
+      return std::abs(error);
     };
-    add(TransitionRule::likeness, both.likeness);
-    add(TransitionRule::changepoint, both.changepoint);
+    const double likeness = add(TransitionRule::likeness, both.likeness);
+    const double changepoint = add(TransitionRule::changepoint, both.changepoint);
+    both.changepoint_nearer += changepoint < likeness ? 1 : 0;
+    both.likeness_nearer += likeness < changepoint ? 1 : 0;
   }
   return both;
 }
@@ -56,7 +69,8 @@ TEST(TransitionBias, TwoMinimumJerkLegs) {
     }
     const Both both = measure(recordings);
     print(std::string("corner at ").append(std::to_string(corner)), both);
-    EXPECT_LT(both.changepoint.absolute, both.likeness.absolute + 1e-3) << corner;
+    EXPECT_TRUE(nearer(both.changepoint_nearer, both.likeness_nearer)) << both.changepoint_nearer << " of 100";
+    EXPECT_FALSE(nearer(both.likeness_nearer, both.changepoint_nearer));
   }
 }
 
@@ -67,7 +81,8 @@ TEST(TransitionBias, SimulatedGrasps) {
   }
   const Both both = measure(recordings);
   print("simulated grasps", both);
-  EXPECT_LT(both.changepoint.absolute, both.likeness.absolute);
+  EXPECT_TRUE(nearer(both.changepoint_nearer, both.likeness_nearer)) << both.changepoint_nearer << " of 180";
+  EXPECT_FALSE(nearer(both.likeness_nearer, both.changepoint_nearer));
 }
 
 }  // namespace

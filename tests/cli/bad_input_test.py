@@ -6,17 +6,7 @@ import shutil
 import tempfile
 import unittest
 
-from support import SOURCE, must, run, snapshot
-
-HEADER = "t_s," + ",".join(
-    [f"T_{joint}" for joint in ("ROT", "MCP", "IP", "ABD")]
-    + [f"{finger}_{joint}" for finger in "IMRL" for joint in ("MCP", "PIP", "DIP", "ABD")]
-    + ["PALM_ARCH", "W_PITCH", "W_YAW"])
-
-
-def rows(count=200, rate=100.0):
-    return [",".join([f"{i / rate:.3f}"] + [f"{0.005 * i * (1 + j % 3):.4f}" for j in range(23)]) for i in range(count)]
-
+from support import HEADER, SOURCE, data_set, must, rows, run, snapshot
 
 class BadInput(unittest.TestCase):
     @classmethod
@@ -44,12 +34,7 @@ class BadInput(unittest.TestCase):
         self.assertEqual(snapshot(store), before)
 
     def recording(self, lines):
-        """A data set of one recording in the form of west_r2g."""
-        folder = pathlib.Path(tempfile.mkdtemp(dir=self.root))
-        (folder / "csv").mkdir()
-        (folder / "csv" / "a.csv").write_text("\n".join(lines) + ("\n" if lines else ""))
-        (folder / "index.csv").write_text("file,subject,object,repetition,samples,duration_s\na.csv,1,cup,1,200,2\n")
-        return folder
+        return data_set(tempfile.mkdtemp(dir=self.root), {"a": lines})
 
     def ingest(self, words, lines):
         self.refuse(2, ["a.csv", *words], "ingest", self.recording(lines), "--store", self.store, "--source",
@@ -76,6 +61,8 @@ class BadInput(unittest.TestCase):
         text[50] = text[50].replace("0.2500", "many", 1)
         self.ingest([":52", "many"], [HEADER, *text])
         self.ingest(["W_YAW"], [HEADER.replace("W_YAW", "L_YAWN"), *rows()])
+        for last, shown in (("1000000000.0", "1000000000 s"), ("1e300", "1e+300 s")):  # more samples than memory holds
+            self.ingest([shown, "is the time in seconds?"], [HEADER, *rows(), rows()[-1].replace("1.990", last, 1)])
 
     def test_missing_files(self):
         self.refuse(2, ["nowhere"], "ingest", self.root / "nowhere", "--store", self.store, "--source",

@@ -13,6 +13,28 @@ SOURCE = pathlib.Path(os.environ["OPPONENS_SOURCE_DIR"])
 SHARED = pathlib.Path(os.environ["OPPONENS_SHARED_DATA"])
 
 
+HEADER = "t_s," + ",".join(
+    [f"T_{joint}" for joint in ("ROT", "MCP", "IP", "ABD")]
+    + [f"{finger}_{joint}" for finger in "IMRL" for joint in ("MCP", "PIP", "DIP", "ABD")]
+    + ["PALM_ARCH", "W_PITCH", "W_YAW"])
+
+
+def rows(count=200, rate=100.0):
+    return [",".join([f"{i / rate:.3f}"] + [f"{0.005 * i * (1 + j % 3):.4f}" for j in range(23)]) for i in range(count)]
+
+
+def data_set(folder, recordings):
+    """A data set in the form of west_r2g, of one subject: name -> lines of a CSV."""
+    folder = pathlib.Path(folder)
+    (folder / "csv").mkdir(parents=True)
+    index = ["file,subject,object,repetition,samples,duration_s"]
+    for number, (name, lines) in enumerate(recordings.items()):
+        (folder / "csv" / f"{name}.csv").write_text("\n".join(lines) + ("\n" if lines else ""))
+        index.append(f"{name}.csv,1,cup,{number + 1},200,2")
+    (folder / "index.csv").write_text("\n".join(index) + "\n")
+    return folder
+
+
 def run(*arguments, cwd=None, env=None):
     """Exit code, stdout, stderr."""
     done = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, cwd=cwd or SOURCE,

@@ -3,10 +3,8 @@
 #include "robot/collision.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <iostream>
 #include <set>
 #include <string>
 #include <thread>
@@ -240,59 +238,6 @@ TEST(CollisionChecker, ThreadsGetTheSameAnswers) {
   for (std::vector<bool>& result : found) threads.emplace_back([&] { result = verdicts(); });
   for (std::thread& thread : threads) thread.join();
   for (const std::vector<bool>& result : found) EXPECT_EQ(result, expected);
-}
-
-TEST(CollisionChecker, PrintsItsSpeed) {
-  const ShelfTask task;
-  const CollisionChecker checker(task.robot, task.scene);
-  Rng rng(35);
-  VectorXd start(task.robot.dof());
-  for (Eigen::Index i = 0; i < start.size(); ++i) {
-    const auto& names = task.scene.start_joints;
-    const auto& joint = task.robot.joint_names()[static_cast<std::size_t>(i)];
-    start[i] = task.scene.start[std::find(names.begin(), names.end(), joint) - names.begin()];
-  }
-  for (const double spread : {0.3, 6.0}) {
-    std::vector<VectorXd> configurations;
-    for (int i = 0; i < 10000; ++i) {
-      VectorXd q = start;
-      for (Eigen::Index k = 0; k < q.size(); ++k) q[k] += spread * rng.uniform(-1, 1);
-      configurations.push_back(task.robot.clip(q));
-    }
-    const auto begin = std::chrono::steady_clock::now();
-    int free = 0;
-    for (const VectorXd& q : configurations) free += checker.free(q) ? 1 : 0;
-    const std::chrono::duration<double, std::micro> spent = std::chrono::steady_clock::now() - begin;
-    std::cout << "start +- " << spread << " rad: " << spent.count() / 1e4 << " us/check, " << free / 100.0
-              << " % free\n";
-    EXPECT_GT(free, 0);
-  }
-}
-
-TEST(CollisionChecker, LaboratoryMeshesAgreeWithTheirTriangulatedSelves) {
-  const fs::path meshes = fs::path(OPPONENS_SHARED_DATA) / "data/robots/paper_lab_ur5_allegro/meshes";
-  const fs::path object = fs::path(OPPONENS_SHARED_DATA) / "data/objects/ycb/006_mustard_bottle/006_mustard_bottle.obj";
-  if (!fs::exists(meshes) || !fs::exists(object)) GTEST_SKIP() << meshes << " or " << object << " is absent";
-  const CollisionShape palm(load_mesh(meshes / "AllegroHand_right_base_link_right.stl", Vector3d::Constant(0.001)));
-  const CollisionShape bottle(load_mesh(object));
-  const CollisionShape finger(load_mesh(meshes / "AllegroHand_right_link_1_0.stl", Vector3d::Constant(0.001)));
-  EXPECT_FALSE(palm.open_surface());
-  Rng rng(36);
-  int hits = 0;
-  for (int i = 0; i < 200; ++i) {
-    Isometry3d X = at(0.06 * rng.normal(), 0.06 * rng.normal(), 0.1 + 0.06 * rng.normal());
-    X.linear() =
-        Eigen::Quaterniond(rng.normal(), rng.normal(), rng.normal(), rng.normal()).normalized().toRotationMatrix();
-    const CollisionShape& part = i % 2 == 0 ? palm : finger;
-    const bool hit = intersect(part, X, bottle, Isometry3d::Identity());
-    EXPECT_EQ(intersect(bottle, Isometry3d::Identity(), part, X), hit);
-    const double distance = separation(part, X, bottle, Isometry3d::Identity());
-    EXPECT_EQ(distance == 0.0, hit);
-    hits += hit ? 1 : 0;
-  }
-  EXPECT_TRUE(hits > 20 && hits < 180) << hits;
-  // A finger wholly inside the bottle collides.
-  EXPECT_TRUE(intersect(finger, at(-0.015, -0.02, 0.06), bottle, Isometry3d::Identity()));
 }
 
 }  // namespace

@@ -232,6 +232,25 @@ TEST(Retarget, NoNeighbourIsBetter) {
   EXPECT_LT(cost(best), 0.99 * cost(recording.q_h)) << "smoothing trades tip positions: the input is not optimal";
 }
 
+TEST(Retarget, TheSizeOfTheHumanHandDoesNotMatter) {
+  const Hands hands;
+  const Demonstration recording = swing(hands.human, 0.2, 0.8, 20);
+  const auto mapped = [&](double size) {
+    return retarget(recording, {}, RobotModel(scaled(load_hand(kHuman), size)), hands.hand, hands.mapping, {}).value();
+  };
+  const Retargeted small = mapped(0.7);
+  const Retargeted large = mapped(1.4);
+  EXPECT_TRUE(small.demonstration.q_h.isApprox(large.demonstration.q_h, 1e-6));
+  EXPECT_NEAR(small.tip_residual_rms, large.tip_residual_rms, 1e-9);
+  // Another shape does: only the fingers' last bones are longer.
+  RobotDescription pointed = load_hand(kHuman);
+  for (SurfacePoint& tip : pointed.tips) tip.p_L *= 1.5;
+  EXPECT_GT((retarget(recording, {}, RobotModel(pointed), hands.hand, hands.mapping, {}).value().demonstration.q_h -
+             large.demonstration.q_h)
+                .norm(),
+            1e-2);
+}
+
 TEST(Retarget, SmoothnessShortensThePath) {
   const Hands hands;
   Demonstration recording = swing(hands.human, 0.2, 0.8);

@@ -130,6 +130,10 @@ TEST_F(LoadRobot, YamlErrorsNameFileLineAndField) {
   expect_contains(yaml_error(start + "joints: []\n"), {"hand.yaml:3", "joints"});
   expect_contains(yaml_error(start), {"hand.yaml", "'joints'"});
   expect_contains(yaml_error(start + "joints: [j]\njiont: 3\n"), {"hand.yaml:4", "jiont", "unknown"});
+  expect_contains(yaml_error(start + "joints: [j]\njoints: [j]\n"), {"hand.yaml:4", "joints", "occurs twice"});
+  EXPECT_EQ(yaml_error(start + "joints: [j]\nwithout_geometry: [c, a]\n"), "no error");
+  expect_contains(yaml_error(start + "joints: [j]\nwithout_geometry: [c, z]\n"),
+                  {"hand.yaml:4", "without_geometry[1]", "no link 'z'"});
   expect_contains(yaml_error(start + "joints: [j]\ncollision: both\n"), {"hand.yaml:4", "'both'"});
   expect_contains(yaml_error("urdf: hand.urdf\npalm_link: z\njoints: [j]\n"), {"hand.yaml:2", "palm_link", "'z'"});
   expect_contains(yaml_error("urdf: gone.urdf\npalm_link: a\njoints: [j]\n"), {"gone.urdf", "cannot be opened"});
@@ -163,6 +167,12 @@ TEST_F(LoadRobot, RobotYamlErrors) {
   expect_contains(yaml_error(arm + mount + "weights: {z: 1}\n"), {"r.yaml:4", "weights.z"});
   expect_contains(yaml_error(arm + mount + "weights: {j: 0}\n"), {"r.yaml:4", "weights.j", "positive"});
   expect_contains(yaml_error(arm + mount + "allowed_collisions: [[a, z]]\n"), {"r.yaml:4", "'z'"});
+  expect_contains(yaml_error(arm + mount + "weights: {j: 1, j: 2}\n"), {"r.yaml:4", "weights.j", "occurs twice"});
+  EXPECT_EQ(yaml_error(arm + mount + "without_geometry: [q, b]\n"), "no error");
+  expect_contains(yaml_error(arm + mount + "without_geometry: [z]\n"), {"r.yaml:4", "without_geometry[0]", "'z'"});
+  write("hand.yaml", "urdf: hand.urdf\npalm_link: a\njoints: [j]\nwithout_geometry: [z]\n");
+  expect_contains(yaml_error(arm + mount), {"hand.yaml:4", "without_geometry[0]", "'z'"});
+  write("hand.yaml", "urdf: hand.urdf\npalm_link: a\njoints: [j]\n");
   expect_contains(yaml_error("arm: {urdf: arm.urdf, joints: [t]}\nhand: hand.yaml\n" + mount), {"r.yaml:1", "'t'"});
   write("arm.urdf", robot(links("pb") + joint("s", "p", "b")));
   expect_contains(yaml_error(arm + "mount: {parent: b}\n"), {"r.yaml:3", "'b'", "both"});

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -19,6 +20,7 @@
 #include "core/rng.hpp"
 #include "robot/bounding_volume_tree.hpp"
 #include "robot/mesh.hpp"
+#include "robot/narrow_phase.hpp"
 
 namespace opponens::robot {
 namespace {
@@ -233,6 +235,72 @@ TEST(MeshDistance, OneTriangleIsEnough) {
   mesh.triangles << 0, 1, 2;
   const MeshDistance distance(share(mesh));
   EXPECT_NEAR(distance.signed_distance({1, 1, 1}), 2.0 / std::sqrt(3.0), 1e-15);
+}
+
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+namespace fs = std::filesystem;
+
+/// The least signed distance of the vertices of one mesh from another.
+double nearest_vertex(const TriangleMesh& from, const Isometry3d& X, const MeshDistance& to) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const auto& p : from.vertices.colwise()) nearest = std::min(nearest, to.signed_distance(X * p));
+  return nearest;
+}
+
+double longest_edge(const TriangleMesh& mesh) {
+  double longest = 0.0;
+  for (const auto& triangle : mesh.triangles.colwise()) {
+    for (int k = 0; k < 3; ++k) {
+      const Vector3d edge = mesh.vertices.col(triangle[k]) - mesh.vertices.col(triangle[(k + 1) % 3]);
+      longest = std::max(longest, edge.norm());
+    }
+  }
+  return longest;
+}
+
+/// FCL between two meshes against signed distances of vertices from our own tree. The least over the vertices of both
+/// bounds the separation from above; less the longest edge from below, since no surface point is further from a vertex.
+/// A part moved by less than its separation stays free.
+TEST(MeshDistance, BoundsTheSeparationOfLaboratoryMeshes) {
+  const fs::path meshes = fs::path(OPPONENS_SHARED_DATA) / "data/robots/paper_lab_ur5_allegro/meshes";
+  const fs::path object = fs::path(OPPONENS_SHARED_DATA) / "data/objects/ycb/006_mustard_bottle/006_mustard_bottle.obj";
+  if (!fs::exists(meshes) || !fs::exists(object)) GTEST_SKIP() << meshes << " or " << object << " is absent";
+  const auto scale = Vector3d::Constant(0.001);
+  const auto bottle_mesh = load_mesh(object);
+  const CollisionShape bottle(bottle_mesh);
+  const MeshDistance to_bottle(bottle_mesh);
+  Rng rng(36);
+  int hits = 0;
+  for (const char* name : {"AllegroHand_right_base_link_right.stl", "AllegroHand_right_link_1_0.stl"}) {
+    const auto mesh = load_mesh(meshes / name, scale);
+    const CollisionShape part(mesh);
+    const MeshDistance to_part(mesh);
+    EXPECT_FALSE(part.open_surface());
+    const double edge = std::max(longest_edge(*mesh), longest_edge(*bottle_mesh));
+    for (int i = 0; i < 60; ++i) {
+      SCOPED_TRACE(std::string(name) + " " + std::to_string(i));
+      Isometry3d X(Eigen::Translation3d(0.06 * rng.normal(), 0.06 * rng.normal(), 0.1 + 0.06 * rng.normal()));
+      X.linear() =
+          Eigen::Quaterniond(rng.normal(), rng.normal(), rng.normal(), rng.normal()).normalized().toRotationMatrix();
+      const double above =
+          std::min(nearest_vertex(*mesh, X, to_bottle), nearest_vertex(*bottle_mesh, X.inverse(), to_part));
+      const bool hit = intersect(part, X, bottle, Isometry3d::Identity());
+      const double distance = separation(part, X, bottle, Isometry3d::Identity());
+      hits += hit ? 1 : 0;
+      EXPECT_TRUE(hit || above > -1e-9) << above;
+      EXPECT_LE(distance, std::max(above, 0.0) + 1e-9);
+      EXPECT_GE(distance, above - edge);
+      if (hit) continue;
+      EXPECT_GT(distance, 0.0);
+      const Vector3d way = Vector3d(rng.normal(), rng.normal(), rng.normal()).normalized();
+      EXPECT_FALSE(intersect(part, Eigen::Translation3d(0.999 * distance * way) * X, bottle, Isometry3d::Identity()));
+    }
+  }
+  EXPECT_TRUE(hits > 10 && hits < 110) << hits;
+  // A finger wholly inside the bottle collides.
+  const CollisionShape finger(load_mesh(meshes / "AllegroHand_right_link_1_0.stl", scale));
+  EXPECT_TRUE(intersect(finger, Isometry3d(Eigen::Translation3d(-0.015, -0.02, 0.06)), bottle, Isometry3d::Identity()));
 }
 
 }  // namespace

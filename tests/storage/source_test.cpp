@@ -63,6 +63,8 @@ TEST(Source, ReadsUnitsSignsLabelsAndTime) {
   EXPECT_EQ(first.origin, Origin::recorded);
   const FileReport& report = reading.files[0];
   EXPECT_EQ(report.sha256, sha256(kRecording));
+  EXPECT_EQ(report.index, "index.csv");
+  EXPECT_EQ(report.index_sha256, sha256(slurp(files.directory / "data/index.csv")));
   EXPECT_EQ(report.rows, 3);
   EXPECT_EQ(report.samples, 3);
   EXPECT_NEAR(report.duration, 0.3, 1e-15);
@@ -125,11 +127,24 @@ TEST(Source, ResamplesLinearlyAndTrims) {
   EXPECT_TRUE(contains(files.refusal(), {"a.csv", "after resampling and trimming", "'0'", "trim.speed"}));
 }
 
-TEST(Source, CalibrationAndHandLengthBecomeLabels) {
-  const Files files("source.yaml", kYaml + "calibrate: {method: range, by: subject}\nhand_length: 0.19\n");
+TEST(Source, TooManySamplesAreRefusedBeforeTheyAreMade) {
+  const std::string yaml = replaced(kYaml, "unit: deg", "unit: rad\nresample: {rate: 10}");
+  const auto refusal = [&](const std::string& last) {
+    const Files files("data/csv/a.csv", "t,index_base,I_PIP,pressure\n5,0,0,0\n" + last + ",1,1,0\n");
+    spill(files.directory / "source.yaml", yaml);
+    return files.refusal();
+  };
+  // (10^9 - 5) s at 10 Hz; the limit is 10^7 samples, so 10^6 s are just allowed.
+  EXPECT_TRUE(
+      contains(refusal("1e9"), {"a.csv", "'1000000000 s'", "1e+07 samples", "10 Hz", "is the time in seconds?"}));
+  EXPECT_TRUE(contains(refusal("1e300"), {"a.csv", "'1e+300 s'"}));
+  EXPECT_TRUE(contains(refusal("1000005.2"), {"a.csv", "'1000005.2 s'"}));
+}
+
+TEST(Source, CalibrationBecomesALabel) {
+  const Files files("source.yaml", kYaml + "calibrate: {method: range, by: subject}\n");
   const Demonstration first = files.read().demonstrations[0];
   EXPECT_EQ(first.labels.at("calibration"), "range by subject");
-  EXPECT_EQ(first.labels.at("hand_length"), "0.19");
 }
 
 struct BadFile {
@@ -195,7 +210,7 @@ TEST(Source, BadDescriptionsNameFileLineFieldValueAndExpectation) {
       {name, kYaml + "trim: {speed: 0.1}\n", {"trim.window", "missing"}},
       {name, kYaml + "calibrate: {method: guess, by: subject}\n", {"'guess': expected range"}},
       {name, kYaml + "calibrate: {method: range, by: day}\n", {"calibrate.by is 'day'", "label"}},
-      {name, kYaml + "hand_length: -1\n", {"hand_length is '-1'"}},
+      {name, kYaml + "hand_length: 0.19\n", {"key is 'hand_length'", "one of"}},
   };
   for (const auto& bad : cases) {
     const Files files(bad.name, bad.text);

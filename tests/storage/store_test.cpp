@@ -71,6 +71,48 @@ TEST(Store, WhatIsPresentIsNotWrittenAgain) {
   EXPECT_EQ(store.list().size(), 2U);
 }
 
+std::vector<std::string> names_as_produced(const Store& store) {
+  std::vector<std::string> names;
+  for (const auto& entry : store.list_as_produced("document")) names.push_back(entry.name.substr(7));
+  return names;
+}
+
+TEST(Store, WhatIsMadeAgainIsTheNewestAgain) {
+  const TemporaryDirectory directory;
+  using Names = std::vector<std::string>;
+  Store store(directory / "store", true);
+  store.commit({small_record(1), small_record(2)});
+  store.commit({small_record(3)});
+  EXPECT_EQ(names_as_produced(store), (Names{"1", "2", "3"}));
+  store.commit({small_record(1)});
+  store.log_run("{\"command\": \"another\"}");
+  EXPECT_EQ(names_as_produced(store), (Names{"2", "3", "1"}));
+  store.commit({small_record(2), small_record(4)});  // one is there already, one is new
+  EXPECT_EQ(names_as_produced(store), (Names{"3", "1", "2", "4"}));
+  store.commit({small_record(5)});
+  store.commit({small_record(3), small_record(1)});
+  EXPECT_EQ(names_as_produced(Store(directory / "store", false)), (Names{"2", "4", "5", "3", "1"}));
+
+  // A log that is cut off loses what its last line told; without a log the order of the files is left.
+  const fs::path log = directory / "store" / "runs.jsonl";
+  fs::resize_file(log, fs::file_size(log) - 10);
+  EXPECT_EQ(names_as_produced(store), (Names{"3", "1", "2", "4", "5"}));
+  fs::remove(log);
+  EXPECT_EQ(names_as_produced(store), (Names{"1", "2", "3", "4", "5"}));
+}
+
+TEST(Store, ALogThatSaysOtherThingsIsNoHindrance) {
+  const TemporaryDirectory directory;
+  Store store(directory / "store", true);
+  const auto ids = store.commit({small_record(1), small_record(2)});
+  for (const std::string line :
+       {"[]", "{\"produced\": 5, \"after\": {}}", "{\"produced\": [\"gone\"], \"after\": \"gone\"}"}) {
+    store.log_run(line);
+  }
+  store.log_run("{\"produced\": [\"gone\", \"" + ids[0] + "\"], \"after\": \"" + ids[1] + "\"}");
+  EXPECT_EQ(names_as_produced(store), (std::vector<std::string>{"2", "1"}));
+}
+
 TEST(Store, LargeCommitsAreSplitIntoFilesOfBoundedSize) {
   const TemporaryDirectory directory;
   Rng rng = stream(2, "payload");
