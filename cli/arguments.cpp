@@ -168,7 +168,7 @@ void add_commands(Builder& add) {
   add.command<AnalyzeOptions>("analyze", "Phases, synergies and boxes", analyze, declare_analyze);
   add.command<GraspOptions>("grasp", "Search force-closure grasps along the synergies", grasp, declare_grasp);
   add.command<PlanOptions>("plan", "Plan a hand-arm path to one of the grasps", plan, declare_plan);
-  add.command<VerifyOptions>("verify", "Check everything stored again, independently", verify,
+  add.command<VerifyOptions>("verify", "Check grasps and paths again by code of its own, all else by hash", verify,
                              [](CLI::App& app, VerifyOptions& options) { add_store(app, options.common); });
   add.command<ReportOptions>("report", "Write one HTML file about what is stored", report,
                              [](CLI::App& app, ReportOptions& options) {

@@ -69,8 +69,10 @@ std::string likeness_words(const PathPart& part) {
 Markup verdict(const VerifyPart& part) {
   const auto failed =
       std::count_if(part.verdicts.begin(), part.verdicts.end(), [](const Verdict& v) { return !v.passed; });
-  if (failed == 0) return badge(true, concat({"all ", std::to_string(part.checked), " objects passed"}));
-  return badge(false, concat({std::to_string(failed), " of ", std::to_string(part.checked), " objects failed"}));
+  const std::string hashes = concat({"; ", std::to_string(part.checked), " hashes agree"});
+  const std::string all = std::to_string(part.verdicts.size());
+  if (failed == 0) return badge(true, concat({all, " grasps and paths passed", hashes}));
+  return badge(false, concat({std::to_string(failed), " of ", all, " grasps and paths failed", hashes}));
 }
 
 }  // namespace
