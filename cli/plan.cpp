@@ -14,28 +14,6 @@
 namespace opponens::cli {
 namespace {
 
-const char* status_name(PlanStatus status) {
-  switch (status) {
-    case PlanStatus::solved:
-      return "solved";
-    case PlanStatus::no_goals:
-      return "no_goals";
-    case PlanStatus::start_in_collision:
-      return "start_in_collision";
-    case PlanStatus::start_out_of_limits:
-      return "start_out_of_limits";
-    case PlanStatus::iteration_limit:
-      return "iteration_limit";
-    case PlanStatus::check_limit:
-      return "check_limit";
-    case PlanStatus::time_limit:
-      return "time_limit";
-    case PlanStatus::interrupted:
-      return "interrupted";
-  }
-  return "unknown";
-}
-
 /// Runs are independent of each other, so they may be spread over threads in any way.
 std::vector<Run> run_all(const Planning& planning, const PlanOptions& options, int threads, Progress& progress) {
   std::vector<Run> runs(static_cast<std::size_t>(options.runs));

@@ -18,13 +18,6 @@ namespace {
 
 using analysis::LikenessReference;
 
-const SynergyGroup& group_named(const SynergySet& set, const std::string& name) {
-  const auto found =
-      std::find_if(set.grasp.begin(), set.grasp.end(), [&](const SynergyGroup& group) { return group.name == name; });
-  require(found != set.grasp.end(), "a stored grasp names the unknown group " + name);
-  return *found;
-}
-
 /// Covariance of a group's grasp phase, in radians.
 LikenessReference grasp_phase_reference(const SynergyGroup& group) {
   const Eigen::MatrixXd scaled = group.basis.axes * group.basis.variance.asDiagonal() * group.basis.axes.transpose();

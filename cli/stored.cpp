@@ -83,6 +83,13 @@ Stored<SynergySet> newest_synergies(const storage::Store& store) {
   return {entries.back().id, std::move(record), std::move(value)};
 }
 
+const SynergyGroup& group_named(const SynergySet& set, const std::string& name) {
+  const auto found =
+      std::find_if(set.grasp.begin(), set.grasp.end(), [&](const SynergyGroup& group) { return group.name == name; });
+  if (found == set.grasp.end()) throw InputError("a stored grasp's synergies have no group " + name);
+  return *found;
+}
+
 std::vector<Stored<Grasp>> grasps_of(const storage::Store& store, const std::string& synergies,
                                      const nlohmann::json& world) {
   std::vector<Stored<Grasp>> result;

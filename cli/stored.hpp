@@ -44,6 +44,8 @@ std::vector<Stored<Demonstration>> recordings(const storage::Store& store);
 std::vector<Stored<Demonstration>> hand_motions(const storage::Store& store);
 /// The newest synergy set. Throws InputError saying which command makes one when there is none.
 Stored<SynergySet> newest_synergies(const storage::Store& store);
+/// The grasp-phase group of that name. Throws InputError when the set has none: a grasp names its group.
+const SynergyGroup& group_named(const SynergySet& set, const std::string& name);
 /// Grasps made from a synergy set with the given robot, scene and object.
 std::vector<Stored<Grasp>> grasps_of(const storage::Store& store, const std::string& synergies,
                                      const nlohmann::json& world);

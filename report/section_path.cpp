@@ -14,25 +14,9 @@ namespace opponens::report {
 namespace {
 
 std::string words(PlanStatus status) {
-  switch (status) {
-    case PlanStatus::solved:
-      return "solved";
-    case PlanStatus::no_goals:
-      return "no goals";
-    case PlanStatus::start_in_collision:
-      return "start in collision";
-    case PlanStatus::start_out_of_limits:
-      return "start out of limits";
-    case PlanStatus::iteration_limit:
-      return "iteration limit";
-    case PlanStatus::check_limit:
-      return "check limit";
-    case PlanStatus::time_limit:
-      return "time limit";
-    case PlanStatus::interrupted:
-      return "interrupted";
-  }
-  return "";
+  std::string name = status_name(status);
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
 }
 
 std::optional<double> valid_share(const PlanResult& result) {
