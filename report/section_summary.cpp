@@ -51,8 +51,11 @@ std::string path_words(const PathPart& part) {
   const auto& run = part.runs.front();
   if (run.result.status != PlanStatus::solved)
     return concat({"none found by ", run.planner, ", seed ", std::to_string(run.seed)});
-  return concat({fixed(run.result.length_l1, 2), " rad (sum of weighted joint movements) by ", run.planner, ", seed ",
-                 std::to_string(run.seed)});
+  std::string words = concat({"as planned ", fixed(run.result.length, 2), " rad in the joint metric, ",
+                              fixed(run.result.length_l1, 2), " rad as the sum of weighted joint movements"});
+  if (run.shortened_length)
+    words += concat({"; shortened ", fixed(*run.shortened_length, 2), " rad in the joint metric"});
+  return concat({words, "; by ", run.planner, ", seed ", std::to_string(run.seed)});
 }
 
 std::string likeness_words(const PathPart& part) {
