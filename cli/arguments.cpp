@@ -120,8 +120,11 @@ void declare_grasp(CLI::App& app, GraspOptions& options) {
   app.add_option("--count", options.count, "Grasps to keep per group")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  app.add_option("--max-trials", options.max_trials, "Trials per group")
+  app.add_option("--max-trials", options.max_trials, "Trials per group at most, when fewer than --count are found")
       ->check(CLI::Range(1, 100000000))
+      ->capture_default_str();
+  app.add_option("--min-trials", options.min_trials, "Trials per group at least, though --count are found sooner")
+      ->check(CLI::Range(0, 100000000))
       ->capture_default_str();
 }
 
@@ -139,7 +142,7 @@ void declare_plan(CLI::App& app, PlanOptions& options) {
   app.add_option("--time-limit", options.time_limit, "Seconds per run; 0 = none (the search stops on counts)")
       ->check(CLI::Range(0.0, 1e6))
       ->capture_default_str();
-  app.add_option("--max-checks", options.max_checks, "Configurations checked per run; 0 = no limit")
+  app.add_option("--max-checks", options.max_checks, "Configurations checked per run, asked once a pass; 0 = no limit")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   app.add_option("--step", options.step, "Longest step of a tree, rad")
@@ -183,6 +186,15 @@ void add_commands(Builder& add) {
                            });
 }
 
+/// The first argument when it stands for a command and is none. CLI11 would only say that a subcommand is required, or
+/// print the general help when --help follows.
+std::string unknown_command(const CLI::App& app, int argc, char** argv) {
+  const std::string first = argc > 1 ? argv[1] : "";
+  if (first.empty() || first.front() == '-') return "";
+  const auto named = app.get_subcommands([&](const CLI::App* sub) { return sub->get_name() == first; });
+  return named.empty() ? first : "";
+}
+
 }  // namespace
 
 Invocation parse_arguments(int argc, char** argv) {
@@ -195,6 +207,11 @@ Invocation parse_arguments(int argc, char** argv) {
       "130 interrupted (what was finished is kept). docs/cli.md is the full reference.");
   Builder builder(app, invocation);
   add_commands(builder);
+  if (const std::string name = unknown_command(app, argc, argv); !name.empty()) {
+    invocation.exit_code = kInvalid;
+    invocation.text = name + ": no such command; opponens --help lists them\n";
+    return invocation;
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -112,23 +112,32 @@ nlohmann::json parameters_of(const storage::Record& record) {
   return nlohmann::json::parse(record.provenance.parameters);
 }
 
+std::string text_field(const storage::Record& record, const std::string& name) {
+  const auto found = record.fields.find(name);
+  const auto* text = found == record.fields.end() ? nullptr : std::get_if<std::string>(&found->second);
+  return text == nullptr ? std::string() : *text;
+}
+
 RunLog::RunLog(const storage::Store& store, std::string command, int threads)
     : store_(store), command_(std::move(command)), threads_(threads), wall_begin_(wall_now()), cpu_begin_(cpu_now()) {}
 
 double RunLog::cpu_seconds() const { return cpu_now() - cpu_begin_; }
 
-void RunLog::finish(const std::vector<std::string>& stored) const {
+void RunLog::finish(const std::vector<std::string>& stored) const { finish(stored, nlohmann::json::object()); }
+
+void RunLog::finish(const std::vector<std::string>& stored, const nlohmann::json& more) const {
   std::array<char, 256> host{};
   gethostname(host.data(), host.size() - 1);
-  const nlohmann::json line = {{"command", command_},
-                               {"date", utc_date(wall_begin_)},
-                               {"wall_seconds", wall_now() - wall_begin_},
-                               {"cpu_seconds", cpu_seconds()},
-                               {"host", host.data()},
-                               {"threads", threads_},
-                               {"program_version", OPPONENS_VERSION},
-                               {"stored", stored.size()},
-                               {"first", stored.empty() ? "" : stored.front()}};
+  nlohmann::json line = {{"command", command_},
+                         {"date", utc_date(wall_begin_)},
+                         {"wall_seconds", wall_now() - wall_begin_},
+                         {"cpu_seconds", cpu_seconds()},
+                         {"host", host.data()},
+                         {"threads", threads_},
+                         {"program_version", OPPONENS_VERSION},
+                         {"stored", stored.size()},
+                         {"first", stored.empty() ? "" : stored.front()}};
+  line.update(more);
   store_.log_run(line.dump());
 }
 

@@ -24,6 +24,7 @@ inline constexpr const char* kSynergySet = "synergy_set";
 inline constexpr const char* kGrasp = "grasp";
 inline constexpr const char* kGraspSearch = "grasp_search";  ///< trials and rejections of one group's search
 inline constexpr const char* kPath = "path";
+inline constexpr const char* kPlanRuns = "plan_runs";  ///< every run of one plan command, those that failed too
 inline constexpr const char* kVerdicts = "verification";
 
 /// A decoded object with its id.
@@ -55,12 +56,17 @@ nlohmann::json world_parameters(const std::string& robot, const std::string& sce
 /// Robot, scene and object that a stored object was made with.
 nlohmann::json parameters_of(const storage::Record& record);
 
+/// A text field; empty when the record has none of that name.
+std::string text_field(const storage::Record& record, const std::string& name);
+
 /// Appends a line about this run: command, what it stored, date, wall and CPU seconds, host, threads.
 class RunLog {
  public:
   RunLog(const storage::Store& store, std::string command, int threads);
   /// Seconds of CPU used by this process since construction.
   double cpu_seconds() const;
+  /// `more` is merged into the line.
+  void finish(const std::vector<std::string>& stored, const nlohmann::json& more) const;
   void finish(const std::vector<std::string>& stored) const;
 
  private:
