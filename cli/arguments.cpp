@@ -117,8 +117,11 @@ void declare_grasp(CLI::App& app, GraspOptions& options) {
   app.add_option("--count", options.count, "Grasps to keep per group")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  app.add_option("--max-trials", options.max_trials, "Trials per group")
+  app.add_option("--max-trials", options.max_trials, "Trials per group at most, when fewer than --count are found")
       ->check(CLI::Range(1, 100000000))
+      ->capture_default_str();
+  app.add_option("--min-trials", options.min_trials, "Trials per group at least, though --count are found sooner")
+      ->check(CLI::Range(0, 100000000))
       ->capture_default_str();
 }
 
@@ -136,7 +139,7 @@ void declare_plan(CLI::App& app, PlanOptions& options) {
   app.add_option("--time-limit", options.time_limit, "Seconds per run; 0 = none (the search stops on counts)")
       ->check(CLI::Range(0.0, 1e6))
       ->capture_default_str();
-  app.add_option("--max-checks", options.max_checks, "Configurations checked per run; 0 = no limit")
+  app.add_option("--max-checks", options.max_checks, "Configurations checked per run, asked once a pass; 0 = no limit")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   app.add_option("--step", options.step, "Longest step of a tree, rad")
@@ -165,7 +168,7 @@ void add_commands(Builder& add) {
   add.command<AnalyzeOptions>("analyze", "Phases, synergies and boxes", analyze, declare_analyze);
   add.command<GraspOptions>("grasp", "Search force-closure grasps along the synergies", grasp, declare_grasp);
   add.command<PlanOptions>("plan", "Plan a hand-arm path to one of the grasps", plan, declare_plan);
-  add.command<VerifyOptions>("verify", "Check everything stored again, independently", verify,
+  add.command<VerifyOptions>("verify", "Check grasps and paths again by code of its own, all else by hash", verify,
                              [](CLI::App& app, VerifyOptions& options) { add_store(app, options.common); });
   add.command<ReportOptions>("report", "Write one HTML file about what is stored", report,
                              [](CLI::App& app, ReportOptions& options) {
@@ -180,6 +183,15 @@ void add_commands(Builder& add) {
                            });
 }
 
+/// The first argument when it stands for a command and is none. CLI11 would only say that a subcommand is required, or
+/// print the general help when --help follows.
+std::string unknown_command(const CLI::App& app, int argc, char** argv) {
+  const std::string first = argc > 1 ? argv[1] : "";
+  if (first.empty() || first.front() == '-') return "";
+  const auto named = app.get_subcommands([&](const CLI::App* sub) { return sub->get_name() == first; });
+  return named.empty() ? first : "";
+}
+
 }  // namespace
 
 Invocation parse_arguments(int argc, char** argv) {
@@ -192,6 +204,11 @@ Invocation parse_arguments(int argc, char** argv) {
       "130 interrupted (what was finished is kept). docs/cli.md is the full reference.");
   Builder builder(app, invocation);
   add_commands(builder);
+  if (const std::string name = unknown_command(app, argc, argv); !name.empty()) {
+    invocation.exit_code = kInvalid;
+    invocation.text = name + ": no such command; opponens --help lists them\n";
+    return invocation;
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

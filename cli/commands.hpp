@@ -59,6 +59,7 @@ struct GraspOptions {
   std::string group = "all";
   int count = 5;
   int max_trials = 2000;
+  int min_trials = 256;
 };
 struct PlanOptions {
   Common common{};

@@ -34,6 +34,10 @@ void Console::document(const std::string& json_text) const {
 
 void Console::warn(const std::string& line) { std::fprintf(stderr, "opponens: %s\n", line.c_str()); }
 
+void Console::advise(const std::string& line) const {
+  if (!quiet_) warn("note: " + line);
+}
+
 bool Console::shows_progress() const { return !quiet_ && isatty(STDERR_FILENO) == 1; }
 
 Progress::Progress(const Console& console, std::string label)

@@ -32,6 +32,8 @@ class Console {
   void document(const std::string& json_text) const;
   /// A line on stderr that --quiet does not hide.
   static void warn(const std::string& line);
+  /// A line on stderr that --quiet hides.
+  void advise(const std::string& line) const;
   bool shows_progress() const;
 
  private:

@@ -22,6 +22,7 @@ fs::path fresh_store(const fs::path& out) {
       throw InputError(store.string() + ": exists and was not made by opponens demo; choose another --out");
     }
     fs::remove_all(store, error);
+    if (error) throw InputError(store.string() + ": cannot remove the earlier demo's store: " + error.message());
   }
   fs::create_directories(out, error);
   std::ofstream marker(out / kMarker);

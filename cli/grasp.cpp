@@ -27,7 +27,7 @@ class Reach {
       : world_(world),
         kinematics_(world.robot),
         free_space_(world.robot, world.scene),
-        closing_(world.robot, world.scene, hand_object_pairs(world)),
+        closing_(world.robot, world.scene, world.hand_object_pairs()),
         depth_(world.robot, world.scene, world.object, world.hand_links()),
         X_RO_(world.X_RO()) {}
 
@@ -35,14 +35,9 @@ class Reach {
     return motion::reach(grasp, world_.robot, kinematics_, X_RO_, free_space_, closing_, kReachResolution, {&depth_});
   }
 
- private:
-  /// A hand link may touch the object while the hand closes.
-  static std::vector<robot::BodyPair> hand_object_pairs(const NamedWorld& world) {
-    std::vector<robot::BodyPair> pairs;
-    for (const auto& link : world.hand_links()) pairs.emplace_back(link, world.object);
-    return pairs;
-  }
+  const robot::CollisionChecker& checker() const { return free_space_; }
 
+ private:
   const NamedWorld& world_;
   robot::ArmKinematics kinematics_;
   robot::CollisionChecker free_space_;
@@ -77,17 +72,27 @@ Json grasp_json(const std::string& id, const Grasp& grasp, const std::vector<std
           {"contacts", contacts_json(grasp.contacts)}};
 }
 
+/// The commonest reasons for a person: without the bodies that are named after a colon (the stored summary keeps them).
 std::string reasons(const std::map<std::string, std::int64_t>& rejected, std::int64_t trials) {
+  constexpr std::size_t kShown = 5;
+  std::map<std::string, std::int64_t> merged;
+  for (const auto& [reason, count] : rejected) merged[reason.substr(0, reason.find(": "))] += count;
   std::vector<std::pair<std::int64_t, std::string>> sorted;
-  for (const auto& [reason, count] : rejected) sorted.emplace_back(count, reason);
+  for (const auto& [reason, count] : merged) sorted.emplace_back(count, reason);
   std::sort(sorted.rbegin(), sorted.rend());
   std::string text;
-  for (const auto& [count, reason] : sorted) {
+  const auto add = [&](std::int64_t count, const std::string& reason) {
     const auto percent = 100.0 * static_cast<double>(count) / static_cast<double>(std::max<std::int64_t>(trials, 1));
     char part[32];
     std::snprintf(part, sizeof part, "%.0f %% ", percent);
     text += (text.empty() ? "" : ", ") + (part + reason);
+  };
+  std::int64_t others = 0;
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    if (i < kShown) add(sorted[i].first, sorted[i].second);
+    if (i >= kShown) others += sorted[i].first;
   }
+  if (others > 0) add(others, "other");
   return text;
 }
 
@@ -155,13 +160,17 @@ int grasp(const GraspOptions& options, const Console& console) {
   const NamedWorld world = load_world(options.robot, options.scene, options.object);
   require_same_joints(synergies.value, world.hand);
   const Reach reach(world);
+  const auto warnings = warnings_of(world, reach.checker());
+  const auto groups = chosen_groups(synergies.value, options.group);
+  for (const auto& warning : warnings) console.advise(warning);
 
   grasp::SearchSettings settings;
   settings.count = options.count;
   settings.max_trials = options.max_trials;
+  settings.min_trials = options.min_trials;
   settings.threads = threads;
   Tally tally;
-  for (const auto& group : chosen_groups(synergies.value, options.group)) {
+  for (const auto& group : groups) {
     Progress progress(console, "grasps of group " + group.name);
     const auto found = grasp::search_grasps(
         world.hand, world.scene, world.object, group, synergies.value.pre_grasp.box, settings, options.common.seed,
@@ -170,7 +179,8 @@ int grasp(const GraspOptions& options, const Console& console) {
     const Json parameters = {{"world", world.parameters},
                              {"group", group.name},
                              {"count", options.count},
-                             {"max_trials", options.max_trials}};
+                             {"max_trials", options.max_trials},
+                             {"min_trials", options.min_trials}};
     const auto origin = provenance("grasp", {synergies.id}, world.files, parameters, options.common.seed);
     store_group(group, found, world, origin, store, tally);
     say_group(console, group, found);
@@ -182,7 +192,8 @@ int grasp(const GraspOptions& options, const Console& console) {
                  {"trials", tally.trials},
                  {"evaluations", tally.evaluations},
                  {"cpu_seconds", log.cpu_seconds()},
-                 {"rejected", tally.rejected}});
+                 {"rejected", tally.rejected},
+                 {"warnings", warnings}});
   console.document(result.dump());
   return tally.ids.empty() ? kNoAnswer : kDone;
 }

@@ -25,6 +25,11 @@ inline Json number(double value) { return std::isfinite(value) ? Json(value) : J
 
 inline Json number(const std::optional<double>& value) { return value ? number(*value) : Json(nullptr); }
 
+/// The other way: null is no number.
+inline std::optional<double> optional_number(const Json& json) {
+  return json.is_number() ? std::optional<double>(json.get<double>()) : std::nullopt;
+}
+
 template <typename Derived>
 Json array(const Eigen::DenseBase<Derived>& values) {
   Json result = Json::array();

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdio>
+#include <exception>
+#include <mutex>
+#include <optional>
 #include <thread>
 
 #include "cli/commands.hpp"
@@ -14,46 +17,41 @@
 namespace opponens::cli {
 namespace {
 
-const char* status_name(PlanStatus status) {
-  switch (status) {
-    case PlanStatus::solved:
-      return "solved";
-    case PlanStatus::no_goals:
-      return "no_goals";
-    case PlanStatus::start_in_collision:
-      return "start_in_collision";
-    case PlanStatus::start_out_of_limits:
-      return "start_out_of_limits";
-    case PlanStatus::iteration_limit:
-      return "iteration_limit";
-    case PlanStatus::check_limit:
-      return "check_limit";
-    case PlanStatus::time_limit:
-      return "time_limit";
-    case PlanStatus::interrupted:
-      return "interrupted";
-  }
-  return "unknown";
-}
-
-/// Runs are independent of each other, so they may be spread over threads in any way.
+/// Runs are independent of each other, so they may be spread over threads in any way. Those that were finished when the
+/// user interrupted are returned, in the order of their seeds.
 std::vector<Run> run_all(const Planning& planning, const PlanOptions& options, int threads, Progress& progress) {
-  std::vector<Run> runs(static_cast<std::size_t>(options.runs));
+  std::vector<std::optional<Run>> runs(static_cast<std::size_t>(options.runs));
   std::atomic<std::size_t> next{0};
   std::atomic<std::int64_t> done{0};
+  std::mutex guard;
+  std::exception_ptr error;
   const auto work = [&](bool reports) {
-    for (std::size_t i = next++; i < runs.size() && !interrupt_requested; i = next++) {
-      runs[i] = planning.run(options.common.seed + i);
-      ++done;
-      if (reports && !interrupt_requested) progress.update(done, options.runs);
+    try {
+      for (std::size_t i = next++; i < runs.size() && !interrupt_requested; i = next++) {
+        Run run = planning.run(options.common.seed + i);
+        if (run.planned.status == PlanStatus::interrupted) continue;
+        runs[i] = std::move(run);
+        ++done;
+        if (reports) progress.update(done, options.runs);
+      }
+    } catch (const Interrupted&) {  // the loops end by the same flag
+    } catch (...) {
+      const std::lock_guard lock(guard);
+      if (!error) error = std::current_exception();
+      next = runs.size();
     }
   };
-  std::vector<std::jthread> others;
-  for (int i = 1; i < std::min(threads, options.runs); ++i) others.emplace_back(work, false);
-  work(true);
-  others.clear();
-  if (interrupt_requested) throw Interrupted();
-  return runs;
+  {
+    std::vector<std::jthread> others;
+    for (int i = 1; i < std::min(threads, options.runs); ++i) others.emplace_back(work, false);
+    work(true);
+  }
+  if (error) std::rethrow_exception(error);
+  std::vector<Run> finished;
+  for (auto& run : runs) {
+    if (run) finished.push_back(std::move(*run));
+  }
+  return finished;
 }
 
 Json run_json(const Run& run, const Query& query) {
@@ -65,12 +63,14 @@ Json run_json(const Run& run, const Query& query) {
           {"detail", planned.detail},
           {"goal",
            solved ? Json(query.grasps[query.grasp_of_goal[static_cast<std::size_t>(planned.goal)]].id) : Json(nullptr)},
+          {"goal_index", solved ? planned.goal : -1},
           {"iterations", planned.iterations},
+          {"extends", planned.extends},
+          {"extends_grown", planned.extends_grown},
           {"collision_checks", planned.collision_checks},
           {"valid_segments",
            planned.extends > 0 ? Json(static_cast<double>(planned.extends_grown) / static_cast<double>(planned.extends))
                                : Json(nullptr)},
-          {"cpu_seconds", run.cpu_seconds},
           {"length_rad", solved ? Json(planned.length) : Json(nullptr)},
           {"length_l1_rad", solved ? Json(planned.length_l1) : Json(nullptr)},
           {"shortened_length_rad", solved ? Json(run.length) : Json(nullptr)},
@@ -79,18 +79,22 @@ Json run_json(const Run& run, const Query& query) {
           {"human_likeness_all", run.human_likeness}};
 }
 
-storage::Record run_record(const Run& run, const Query& query, const PlanOptions& options, const NamedWorld& world) {
+Json parameters_json(const PlanOptions& options, const NamedWorld& world) {
+  return {{"world", world.parameters},        {"planner", options.planner},       {"step", options.step},
+          {"resolution", options.resolution}, {"max_checks", options.max_checks}, {"time_limit", options.time_limit}};
+}
+
+storage::Record run_record(const Run& run, const Query& query, const storage::Provenance& origin,
+                           const std::string& object) {
   const auto& grasp = query.grasps[query.grasp_of_goal[static_cast<std::size_t>(run.planned.goal)]];
-  const Json parameters = {
-      {"world", world.parameters},        {"planner", options.planner},       {"step", options.step},
-      {"resolution", options.resolution}, {"max_checks", options.max_checks}, {"time_limit", options.time_limit}};
-  std::vector<std::string> inputs = {grasp.id};
+  auto record = storage::encode(run.planned, origin);
+  record.provenance.seed = run.seed;
+  record.provenance.inputs = {grasp.id};
   for (const auto& other : query.grasps) {
-    if (other.id != grasp.id) inputs.push_back(other.id);
+    if (other.id != grasp.id) record.provenance.inputs.push_back(other.id);
   }
-  auto record = storage::encode(run.planned, provenance("plan", inputs, world.files, parameters, run.seed));
   record.kind = kPath;
-  record.name = world.object + " by group " + grasp.value.group;
+  record.name = object + " by group " + grasp.value.group;
   record.fields["goal_grasp"] = grasp.id;
   record.fields["motion"] = run.motion.waypoints;
   record.fields["times"] = run.times;
@@ -105,14 +109,14 @@ void say_run(const Console& console, const Run& run, const Query& query) {
                 run.planned.detail);
     return;
   }
-  char text[240];
+  char text[320];
   std::snprintf(text, sizeof text,
-                "seed %llu: reached a grasp of group %s; %lld iterations, %lld collision checks, length %.2f rad "
-                "(shortened %.2f), %.1f s long",
+                "seed %llu: reached a grasp of group %s; %lld iterations, %lld collision checks; length %.2f rad as "
+                "planned (%.2f rad as a sum over joints), %.2f rad shortened; %.1f s long",
                 static_cast<unsigned long long>(run.seed),
                 query.grasps[query.grasp_of_goal[static_cast<std::size_t>(run.planned.goal)]].value.group.c_str(),
                 static_cast<long long>(run.planned.iterations), static_cast<long long>(run.planned.collision_checks),
-                run.planned.length, run.length, run.times(run.times.size() - 1));
+                run.planned.length, run.planned.length_l1, run.length, run.times(run.times.size() - 1));
   console.say(text);
 }
 
@@ -124,6 +128,42 @@ Json path_json(const Run& run) {
           {"pregrasp_row", run.pregrasp_row}};
 }
 
+/// The paths of the solved runs, and after them the record of every run: a success rate needs those that failed.
+std::vector<storage::Record> records_of(const std::vector<Run>& runs, const Query& query, const PlanOptions& options,
+                                        const NamedWorld& world) {
+  std::vector<std::string> inputs;
+  for (const auto& grasp : query.grasps) inputs.push_back(grasp.id);
+  const auto origin = provenance("plan", inputs, world.files, parameters_json(options, world), options.common.seed);
+  std::vector<storage::Record> records;
+  Json all = Json::array();
+  for (const auto& run : runs) {
+    all.push_back(run_json(run, query));
+    all.back()["path"] = nullptr;
+    if (run.planned.status != PlanStatus::solved) continue;
+    records.push_back(run_record(run, query, origin, world.object));
+    all.back()["path"] = storage::content_hash(records.back());
+  }
+  records.push_back({kPlanRuns, options.planner, origin, {{"runs", all.dump()}}});
+  return records;
+}
+
+/// Times differ from run to run: they go to the log.
+Json times_json(const std::vector<Run>& runs, const PlanOptions& options, const std::string& id) {
+  Json seconds = Json::array();
+  for (const auto& run : runs) seconds.push_back(run.cpu_seconds);
+  return {{"planner", options.planner}, {"plan_runs", id}, {"planner_cpu_seconds", seconds}};
+}
+
+Json advise(const NamedWorld& world, const Planning& planning, const Console& console) {
+  auto warnings = warnings_of(world, planning.checker());
+  if (const auto count = planning.goals_left_out(); count > 0) {
+    warnings.push_back(std::to_string(count) + " of " + std::to_string(count + planning.query().goals.size()) +
+                       " goals left out: their closing segment is not valid at this resolution");
+  }
+  for (const auto& warning : warnings) console.advise(warning);
+  return warnings;
+}
+
 }  // namespace
 
 int plan(const PlanOptions& options, const Console& console) {
@@ -132,26 +172,29 @@ int plan(const PlanOptions& options, const Console& console) {
   const RunLog log(store, "plan", threads);
   const NamedWorld world = load_world(options.robot, options.scene, options.object);
   const Planning planning(options, world, make_query(store, world), free_motion_reference(store));
+  Json result = document("plan");
+  result["warnings"] = advise(world, planning, console);
   Progress progress(console, "planning");
   const auto runs = run_all(planning, options, threads, progress);
+  if (runs.empty()) throw Interrupted();
 
-  Json result = document("plan");
+  auto ids = store.commit(records_of(runs, planning.query(), options, world));
+  log.finish(ids, times_json(runs, options, ids.back()));
+  if (interrupt_requested) throw Interrupted();
+  result["plan_runs"] = ids.back();
+  ids.pop_back();
+  result["ids"] = ids;
   result["runs"] = Json::array();
-  std::vector<storage::Record> records;
   const Run* shown = nullptr;
   for (const auto& run : runs) {
     result["runs"].push_back(run_json(run, planning.query()));
+    result["runs"].back()["cpu_seconds"] = run.cpu_seconds;
     say_run(console, run, planning.query());
-    if (run.planned.status != PlanStatus::solved) continue;
-    if (shown == nullptr) shown = &run;
-    records.push_back(run_record(run, planning.query(), options, world));
+    if (shown == nullptr && run.planned.status == PlanStatus::solved) shown = &run;
   }
-  const auto ids = store.commit(records);
-  log.finish(ids);
   result["path"] = shown == nullptr ? Json(nullptr) : path_json(*shown);
-  result["ids"] = ids;
   console.document(result.dump());
-  return records.size() == runs.size() ? kDone : kNoAnswer;
+  return ids.size() == runs.size() ? kDone : kNoAnswer;
 }
 
 }  // namespace opponens::cli

@@ -17,13 +17,6 @@ namespace {
 
 using analysis::LikenessReference;
 
-const SynergyGroup& group_named(const SynergySet& set, const std::string& name) {
-  const auto found =
-      std::find_if(set.grasp.begin(), set.grasp.end(), [&](const SynergyGroup& group) { return group.name == name; });
-  require(found != set.grasp.end(), "a stored grasp names the unknown group " + name);
-  return *found;
-}
-
 /// Covariance of a group's grasp phase, in radians.
 LikenessReference grasp_phase_reference(const SynergyGroup& group) {
   const Eigen::MatrixXd scaled = group.basis.axes * group.basis.variance.asDiagonal() * group.basis.axes.transpose();
@@ -73,15 +66,40 @@ Planning::Planning(const PlanOptions& options, const NamedWorld& world, Query qu
       query_(std::move(query)),
       free_motion_(std::move(free_motion)),
       checker_(world.robot, world.scene),
+      closing_(world.robot, world.scene, world.hand_object_pairs()),
       depth_(world.robot, world.scene, world.object, world.hand_links()),
       space_(motion::make_world(checker_, world.robot, options.resolution)) {
   settings_.variant = options.planner == "synergy" ? motion::Variant::synergy : motion::Variant::rrtconnect;
   settings_.step = options.step;
-  settings_.resolution = options.resolution;
   settings_.max_checks = options.max_checks;
   settings_.time_limit = options.time_limit;
   settings_.interrupted = [] { return interrupt_requested.load(); };
   motion::validate(settings_);
+  leave_out_goals();
+}
+
+/// What may touch on the closing segment: the links of the grasp's own contacts with the object, and nothing else.
+motion::World Planning::closing_of(const Grasp& grasp) const {
+  return motion::closing_world(checker_, closing_, world_.robot, grasp.contacts, options_.resolution, {&depth_});
+}
+
+/// A goal is of use only when the hand can close from it. The grasps were asked at a spacing of their own, so this is
+/// asked again at the chosen one, before the planner may choose such a goal and lose the others with it.
+void Planning::leave_out_goals() {
+  Query kept{query_.start, std::move(query_.synergies), std::move(query_.grasps), {}, {}, {}};
+  for (std::size_t i = 0; i < query_.goals.size(); ++i) {
+    const std::size_t grasp = query_.grasp_of_goal[i];
+    const auto segment = motion::closing_segment(query_.goals[i].q, query_.q_grasp[i], world_.robot.hand(),
+                                                 closing_of(kept.grasps[grasp].value));
+    if (segment.invalid) {
+      ++goals_left_out_;
+      continue;
+    }
+    kept.goals.push_back({query_.goals[i].q, query_.goals[i].box, static_cast<int>(kept.goals.size())});
+    kept.grasp_of_goal.push_back(grasp);
+    kept.q_grasp.push_back(query_.q_grasp[i]);
+  }
+  query_ = std::move(kept);
 }
 
 Run Planning::run(std::uint64_t seed) const {
@@ -93,6 +111,10 @@ Run Planning::run(std::uint64_t seed) const {
                                 robot.hand(), robot.lower(), robot.upper(), robot.weights(), space_, settings_, seed);
   result.cpu_seconds = thread_cpu_seconds() - begin;
   if (result.planned.status == PlanStatus::solved) finish(result);
+  if (query_.goals.empty()) {
+    result.planned.detail =
+        "of " + std::to_string(goals_left_out_) + " goals none has a valid closing segment at this resolution";
+  }
   return result;
 }
 
@@ -102,25 +124,12 @@ void Planning::finish(Run& run) const {
   run.length = shorter.length;
   const auto goal = static_cast<std::size_t>(run.planned.goal);
   const Grasp& grasp = query_.grasps[query_.grasp_of_goal[goal]].value;
-  const robot::CollisionChecker closing(robot, world_.scene, touching(grasp));
-  auto whole = motion::append_closing_segment(shorter.path, query_.q_grasp[goal], robot.hand(),
-                                              motion::closing_world(closing, robot, options_.resolution, {&depth_}));
-  if (!whole) {
-    run.planned.status = PlanStatus::no_goals;
-    run.planned.detail = whole.error().detail;
-    return;
-  }
+  auto whole = motion::append_closing_segment(shorter.path, query_.q_grasp[goal], robot.hand(), closing_of(grasp));
+  require(whole.has_value(), "plan: a goal without a valid closing segment was reached");
   run.motion = std::move(*whole);
   run.pregrasp_row = static_cast<int>(shorter.path.waypoints.rows()) - 1;
   run.times = motion::waypoint_times(run.motion, robot.velocity(), {});
   add_human_likeness(run, group_named(query_.synergies, grasp.group));
-}
-
-/// The grasp's own contacts: the only link-object pairs that may touch, on the closing segment alone.
-std::vector<robot::BodyPair> Planning::touching(const Grasp& grasp) const {
-  std::vector<robot::BodyPair> pairs;
-  for (const auto& contact : grasp.contacts) pairs.emplace_back(contact.link, world_.object);
-  return pairs;
 }
 
 void Planning::add_human_likeness(Run& run, const SynergyGroup& group) const {

@@ -51,12 +51,16 @@ class Planning {
   Planning(const PlanOptions& options, const NamedWorld& world, Query query,
            std::optional<analysis::LikenessReference> free_motion);
 
+  /// Goals whose closing segment is not valid at the chosen resolution have been left out of it.
   const Query& query() const { return query_; }
+  std::size_t goals_left_out() const { return goals_left_out_; }
+  const robot::CollisionChecker& checker() const { return checker_; }
   Run run(std::uint64_t seed) const;
 
  private:
+  void leave_out_goals();
+  motion::World closing_of(const Grasp& grasp) const;
   void finish(Run& run) const;
-  std::vector<robot::BodyPair> touching(const Grasp& grasp) const;
   void add_human_likeness(Run& run, const SynergyGroup& group) const;
 
   const PlanOptions& options_;
@@ -64,9 +68,11 @@ class Planning {
   Query query_;
   std::optional<analysis::LikenessReference> free_motion_;
   robot::CollisionChecker checker_;
+  robot::CollisionChecker closing_;  ///< leaves hand-object pairs out
   motion::ContactDepth depth_;
   motion::World space_;
   motion::PlannerSettings settings_;
+  std::size_t goals_left_out_ = 0;
 };
 
 }  // namespace opponens::cli

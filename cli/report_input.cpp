@@ -3,13 +3,12 @@
 #include "cli/report_input.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <functional>
 #include <set>
-#include <sstream>
 
 #include "analysis/analyze.hpp"
 #include "cli/json.hpp"
+#include "cli/report_plan.hpp"
 #include "cli/resources.hpp"
 #include "cli/stored.hpp"
 #include "cli/world.hpp"
@@ -19,12 +18,6 @@ namespace opponens::cli {
 namespace {
 
 using namespace opponens::report;
-
-std::string text_field(const storage::Record& record, const std::string& name) {
-  const auto found = record.fields.find(name);
-  const auto* text = found == record.fields.end() ? nullptr : std::get_if<std::string>(&found->second);
-  return text == nullptr ? std::string() : *text;
-}
 
 std::string group_label(const Demonstration& motion, const std::string& group_by) {
   const auto found = motion.labels.find(group_by);
@@ -40,7 +33,7 @@ void count_motion(const Demonstration& motion, const std::string& group_by,
                        ? Interval{seconds, seconds}
                        : Interval{std::min(group.duration.low, seconds), std::max(group.duration.high, seconds)};
   group.name = name;
-  group.free_motion = is_free_motion(motion);
+  group.free_motion = analysis::is_free_motion(motion);
   group.mean_duration = (group.mean_duration * group.recordings + seconds) / (group.recordings + 1);
   group.recordings += 1;
   group.samples += static_cast<int>(motion.time.size());
@@ -77,10 +70,6 @@ DemonstrationPart demonstration_part(const std::vector<Stored<Demonstration>>& m
   part.source = origin_sentence(part.simulated, static_cast<int>(motions.size()));
   part.example = motions.front().value;
   return part;
-}
-
-std::optional<double> optional_number(const Json& value) {
-  return value.is_number() ? std::optional<double>(value.get<double>()) : std::nullopt;
 }
 
 /// Known transition of a motion as a fraction of its duration.
@@ -185,28 +174,6 @@ GraspPart grasp_part(const storage::Store& store, const std::string& synergies, 
   return part;
 }
 
-PathPart path_part(const std::string& id, const storage::Record& record) {
-  const Json parameters = parameters_of(record);
-  PathPart part;
-  part.id = id;
-  PlanRun run;
-  run.planner = parameters.at("planner");
-  run.seed = record.provenance.seed;
-  run.result = storage::decode_plan_result(record);
-  for (const auto& one : Json::parse(text_field(record, "human_likeness"))) {
-    const std::string reference = one.at("reference");
-    const std::string of = one.at("of");
-    run.human_likeness.push_back({optional_number(one.at("value")), reference + ", " + of + " path"});
-  }
-  part.path.joint_names = run.result.path.joint_names;
-  part.runs.push_back(std::move(run));
-  part.goal_grasp = text_field(record, "goal_grasp");
-  part.path.waypoints = std::get<Eigen::MatrixXd>(record.fields.at("motion"));
-  part.times = std::get<Eigen::VectorXd>(record.fields.at("times"));
-  part.pregrasp = static_cast<int>(std::get<std::int64_t>(record.fields.at("pregrasp_row")));
-  return part;
-}
-
 VerifyPart verify_part(const Json& found) {
   VerifyPart part;
   part.checks = found.at("checks").get<std::vector<std::string>>();
@@ -234,22 +201,6 @@ std::vector<ProvenanceItem> chain_of(const storage::Store& store, const std::str
   return items;
 }
 
-/// The run log, and the planner's share of it: everything that differs from run to run.
-RunPart run_part(const storage::Store& store) {
-  RunPart part;
-  std::ifstream file(store.directory() / "runs.jsonl");
-  std::ostringstream text;
-  text << file.rdbuf();
-  part.log = text.str();
-  std::istringstream lines(part.log);
-  for (std::string line; std::getline(lines, line);) {
-    const Json run = Json::parse(line, nullptr, false);
-    if (run.is_object() && run.value("command", "") == "plan")
-      part.planning_seconds = optional_number(run["wall_seconds"]);
-  }
-  return part;
-}
-
 void add_world_and_results(const storage::Store& store, const std::string& synergies, ReportInput& input) {
   std::map<std::string, bool> verdicts;
   if (const auto id = newest(store, kVerdicts)) {
@@ -257,19 +208,18 @@ void add_world_and_results(const storage::Store& store, const std::string& syner
     input.verification = verify_part(found);
     for (const auto& verdict : input.verification->verdicts) verdicts[verdict.id] = verdict.passed;
   }
+  const auto plans = plans_of(store, synergies);
   const auto grasp = newest_made_from(store, kGrasp, {synergies});
   if (!grasp) return;
-  const auto path = newest_path(store, synergies);
-  const std::string& id = path ? *path : *grasp;
-  const storage::Record record = store.read(id);
+  const storage::Record record = store.read(plans.empty() ? *grasp : plans.front().id);
   const Json world = parameters_of(record).at("world");
   NamedWorld loaded = load_world(world.at("robot"), world.at("scene"), world.at("object"));
   input.robot = std::move(loaded.robot);
   input.hand = std::move(loaded.hand);
   input.scene = std::move(loaded.scene);
   input.grasps = grasp_part(store, synergies, world_key(record), verdicts);
-  if (path) input.path = path_part(id, record);
-  input.provenance = chain_of(store, id);
+  input.path = path_part(store, plans);
+  input.provenance = chain_of(store, input.path && !input.path->id.empty() ? input.path->id : *grasp);
 }
 
 }  // namespace

@@ -108,6 +108,7 @@ int retarget(const RetargetOptions& options, const Console& console) {
   std::vector<storage::Record> records;
   Residuals residuals;
   for (const auto& motion : motions) {
+    if (interrupt_requested) break;
     progress.update(static_cast<std::int64_t>(records.size()), static_cast<std::int64_t>(motions.size()));
     const auto cluster = calibration_cluster(motion.value);
     const auto calibration =
@@ -124,6 +125,7 @@ int retarget(const RetargetOptions& options, const Console& console) {
   }
   const auto ids = store.commit(records);
   log.finish(ids);
+  if (interrupt_requested) throw Interrupted();
   const double rms = std::sqrt(residuals.squares / residuals.samples);
   char text[200];
   std::snprintf(text, sizeof text,

@@ -97,12 +97,19 @@ std::optional<std::string> newest_made_from(const storage::Store& store, const c
   return found == entries.rend() ? std::nullopt : std::optional(found->id);
 }
 
-std::optional<std::string> newest_path(const storage::Store& store, const std::string& synergies) {
+std::vector<storage::IndexEntry> plans_of(const storage::Store& store, const std::string& synergies) {
   std::set<std::string> grasps;
   for (const auto& entry : store.list(kGrasp)) {
     if (std::find(entry.inputs.begin(), entry.inputs.end(), synergies) != entry.inputs.end()) grasps.insert(entry.id);
   }
-  return newest_made_from(store, kPath, grasps);
+  std::vector<storage::IndexEntry> plans;
+  for (const auto& entry : store.list_as_produced(kPlanRuns)) {
+    if (std::any_of(entry.inputs.begin(), entry.inputs.end(), [&](const auto& id) { return grasps.contains(id); })) {
+      plans.push_back(entry);
+    }
+  }
+  std::reverse(plans.begin(), plans.end());
+  return plans;
 }
 
 Stored<SynergySet> newest_synergies(const storage::Store& store) {
@@ -111,6 +118,13 @@ Stored<SynergySet> newest_synergies(const storage::Store& store) {
   storage::Record record = store.read(*id);
   SynergySet value = storage::decode_synergy_set(record);
   return {*id, std::move(record), std::move(value)};
+}
+
+const SynergyGroup& group_named(const SynergySet& set, const std::string& name) {
+  const auto found =
+      std::find_if(set.grasp.begin(), set.grasp.end(), [&](const SynergyGroup& group) { return group.name == name; });
+  if (found == set.grasp.end()) throw InputError("a stored grasp's synergies have no group " + name);
+  return *found;
 }
 
 WorldKey world_key(const storage::Record& record) {
@@ -139,23 +153,32 @@ nlohmann::json parameters_of(const storage::Record& record) {
   return nlohmann::json::parse(record.provenance.parameters);
 }
 
+std::string text_field(const storage::Record& record, const std::string& name) {
+  const auto found = record.fields.find(name);
+  const auto* text = found == record.fields.end() ? nullptr : std::get_if<std::string>(&found->second);
+  return text == nullptr ? std::string() : *text;
+}
+
 RunLog::RunLog(const storage::Store& store, std::string command, int threads)
     : store_(store), command_(std::move(command)), threads_(threads), wall_begin_(wall_now()), cpu_begin_(cpu_now()) {}
 
 double RunLog::cpu_seconds() const { return cpu_now() - cpu_begin_; }
 
-void RunLog::finish(const std::vector<std::string>& stored) const {
+void RunLog::finish(const std::vector<std::string>& stored) const { finish(stored, nlohmann::json::object()); }
+
+void RunLog::finish(const std::vector<std::string>& stored, const nlohmann::json& more) const {
   std::array<char, 256> host{};
   gethostname(host.data(), host.size() - 1);
-  const nlohmann::json line = {{"command", command_},
-                               {"date", utc_date(wall_begin_)},
-                               {"wall_seconds", wall_now() - wall_begin_},
-                               {"cpu_seconds", cpu_seconds()},
-                               {"host", host.data()},
-                               {"threads", threads_},
-                               {"program_version", OPPONENS_VERSION},
-                               {"stored", stored.size()},
-                               {"first", stored.empty() ? "" : stored.front()}};
+  nlohmann::json line = {{"command", command_},
+                         {"date", utc_date(wall_begin_)},
+                         {"wall_seconds", wall_now() - wall_begin_},
+                         {"cpu_seconds", cpu_seconds()},
+                         {"host", host.data()},
+                         {"threads", threads_},
+                         {"program_version", OPPONENS_VERSION},
+                         {"stored", stored.size()},
+                         {"first", stored.empty() ? "" : stored.front()}};
+  line.update(more);
   store_.log_run(line.dump());
 }
 

@@ -26,6 +26,7 @@ inline constexpr const char* kSynergySet = "synergy_set";
 inline constexpr const char* kGrasp = "grasp";
 inline constexpr const char* kGraspSearch = "grasp_search";  ///< trials and rejections of one group's search
 inline constexpr const char* kPath = "path";
+inline constexpr const char* kPlanRuns = "plan_runs";  ///< every run of one plan command, those that failed too
 inline constexpr const char* kVerdicts = "verification";
 
 /// A decoded object with its id.
@@ -57,10 +58,12 @@ std::optional<std::string> newest(const storage::Store& store, const char* kind)
 /// The newest object of a kind that was made from any of the given objects.
 std::optional<std::string> newest_made_from(const storage::Store& store, const char* kind,
                                             const std::set<std::string>& inputs);
-/// The newest path to a grasp of these synergies.
-std::optional<std::string> newest_path(const storage::Store& store, const std::string& synergies);
+/// The records of plan commands to grasps of these synergies, the newest first.
+std::vector<storage::IndexEntry> plans_of(const storage::Store& store, const std::string& synergies);
 /// The newest synergy set. Throws InputError saying which command makes one when there is none.
 Stored<SynergySet> newest_synergies(const storage::Store& store);
+/// The grasp-phase group of that name. Throws InputError when the set has none: a grasp names its group.
+const SynergyGroup& group_named(const SynergySet& set, const std::string& name);
 
 /// Robot, scene and object by what their files hold, not by how their paths are spelt.
 struct WorldKey {
@@ -79,12 +82,17 @@ nlohmann::json world_parameters(const std::string& robot, const std::string& sce
 /// Robot, scene and object that a stored object was made with.
 nlohmann::json parameters_of(const storage::Record& record);
 
+/// A text field; empty when the record has none of that name.
+std::string text_field(const storage::Record& record, const std::string& name);
+
 /// Appends a line about this run: command, what it stored, date, wall and CPU seconds, host, threads.
 class RunLog {
  public:
   RunLog(const storage::Store& store, std::string command, int threads);
   /// Seconds of CPU used by this process since construction.
   double cpu_seconds() const;
+  /// `more` is merged into the line.
+  void finish(const std::vector<std::string>& stored, const nlohmann::json& more) const;
   void finish(const std::vector<std::string>& stored) const;
 
  private:

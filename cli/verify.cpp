@@ -47,23 +47,16 @@ void check_files(const storage::Record& record, Verdict& verdict) {
   }
 }
 
-const SynergyGroup* find_group(const SynergySet& set, const std::string& name) {
-  const auto found = std::find_if(set.grasp.begin(), set.grasp.end(),
-                                  [&](const SynergyGroup& group) { return group.name == name; });
-  return found == set.grasp.end() ? nullptr : &*found;
-}
-
 Verdict grasp_verdict(const storage::Store& store, const storage::Record& record, Worlds& worlds) {
   const Grasp grasp = storage::decode_grasp(record);
   const SynergySet synergies = storage::decode_synergy_set(store.read(record.provenance.inputs.at(0)));
-  const SynergyGroup* group = find_group(synergies, grasp.group);
-  Verdict verdict;
-  if (group == nullptr) {
-    verdict.fail("its synergies have no group " + grasp.group);
-    return verdict;
-  }
+  const SynergyGroup& group = group_named(synergies, grasp.group);
   const NamedWorld& world = worlds.of(parameters_of(record).at("world"));
-  return opponens::verify::check_grasp(grasp, {&group->box, &world.hand, &world.scene.body(world.object)});
+  const opponens::verify::GraspCheckSettings settings;
+  Verdict verdict =
+      opponens::verify::check_grasp(grasp, {&group.box, &world.hand, &world.scene.body(world.object)}, settings);
+  opponens::verify::check_arm_solutions(grasp, world.robot, world.X_RO(), settings.tolerance, verdict);
+  return verdict;
 }
 
 /// The arm solution that a path uses: the one nearest to its pre-grasp (check_path asks for equality).
@@ -94,11 +87,14 @@ Verdict path_verdict(const storage::Store& store, const storage::Record& record,
   claim.goal << arm.q_pregrasp, grasp.q_pregrasp;
   claim.grasp = Eigen::VectorXd(world.robot.dof());
   *claim.grasp << arm.q_grasp, grasp.q_grasp;
+  const Eigen::Isometry3d X_WO = world.scene.body(world.object).X_WB;
+  claim.X_WH_pregrasp = X_WO * grasp.X_OH_pregrasp;
+  claim.X_WH_grasp = X_WO * grasp.X_OH;
   claim.object = world.object;
   for (const auto& contact : grasp.contacts) claim.contact_links.insert(contact.link);
   opponens::verify::PathCheckSettings settings;
-  settings.spacing = parameters.at("resolution").get<double>() / 10.0;
-  settings.clearance_spacing = parameters.at("resolution").get<double>();
+  // The stored resolution may only make the check denser: a coarsely planned path is not checked coarsely.
+  settings.spacing = std::min(settings.spacing, parameters.at("resolution").get<double>() / 10.0);
   return opponens::verify::check_path(motion, claim, world.robot, world.scene, settings);
 }
 
@@ -107,6 +103,7 @@ struct Tally {
   Json verdicts = Json::array();
   std::vector<std::string> ids;
   double worst_clearance = std::numeric_limits<double>::infinity();
+  std::pair<std::string, std::string> worst_pair;
   double worst_penetration = 0.0;
 };
 
@@ -116,7 +113,10 @@ void add(const std::string& id, const std::string& kind, const Verdict& verdict,
   tally.verdicts.push_back({{"id", id}, {"kind", kind}, {"passed", verdict.ok}, {"reason", reason}});
   tally.ids.push_back(id);
   if (!verdict.ok) tally.failed.push_back({{"id", id}, {"reason", reason}});
-  tally.worst_clearance = std::min(tally.worst_clearance, verdict.worst_clearance);
+  if (verdict.worst_clearance < tally.worst_clearance) {
+    tally.worst_clearance = verdict.worst_clearance;
+    tally.worst_pair = verdict.worst_pair;
+  }
   tally.worst_penetration = std::max(tally.worst_penetration, verdict.worst_contact_penetration);
 }
 
@@ -137,12 +137,15 @@ void check_all(const storage::Store& store, const char* kind, Check check, World
 }
 
 std::vector<std::string> sentences() {
-  return {"Every file's and every object's hash was computed again and compared.",
-          "The robot, scene and mesh files behind grasps and paths are the ones they were made with.",
-          "Grasps: rigid poses, joint limits, slack against the synergy box, contacts on both surfaces, and that their "
-          "wrenches positively span all forces and torques (non-negative least squares, no shared solver).",
-          "Paths: start, pre-grasp, grasp, joint limits, and collision at a tenth of the planner's resolution by a loop "
-          "of its own; contacts only between the grasp's own links and the object, on the closing segment."};
+  return {
+      "Every file's and every object's hash was computed again and compared.",
+      "The robot, scene and mesh files behind grasps and paths are the ones they were made with.",
+      "Grasps: rigid poses, joint limits, slack against the synergy box, contacts on both surfaces, that their "
+      "wrenches positively span all forces and torques, the stored quality (non-negative least squares and descent, "
+      "no shared solver), and that each arm solution puts the palm where the grasp says.",
+      "Paths: start, pre-grasp, grasp and the palm's poses there, joint limits, and collision every 0.002 rad (or a "
+      "tenth of the planner's resolution where that is less) by a loop of its own, between the planner's own samples; "
+      "contacts only between the grasp's own links and the object, on the closing segment."};
 }
 
 }  // namespace
@@ -162,12 +165,14 @@ int verify(const VerifyOptions& options, const Console& console) {
   // Not its own earlier verdicts: where nothing changed, the verdict is the same object.
   const auto checked = store.list().size() - store.list(kVerdicts).size();
   Json result = document("verify");
-  result.update({{"checked", checked},
-                 {"failed", tally.failed},
-                 {"worst_clearance_m", number(tally.worst_clearance)},
-                 {"worst_contact_penetration_m", tally.worst_penetration},
-                 {"checks", sentences()},
-                 {"verdicts", tally.verdicts}});
+  result.update(
+      {{"checked", checked},
+       {"failed", tally.failed},
+       {"worst_clearance_m", number(tally.worst_clearance)},
+       {"worst_pair", tally.worst_pair.first.empty() ? "" : tally.worst_pair.first + " and " + tally.worst_pair.second},
+       {"worst_contact_penetration_m", tally.worst_penetration},
+       {"checks", sentences()},
+       {"verdicts", tally.verdicts}});
   storage::Record record{kVerdicts, "verification", provenance("verify", tally.ids, {}, Json::object(), 0), {}};
   record.fields["verdicts"] = result.dump();
   log.finish(store.commit({record}));

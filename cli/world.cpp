@@ -44,6 +44,20 @@ WorldKey NamedWorld::key() const {
   return key;
 }
 
+std::vector<robot::BodyPair> NamedWorld::hand_object_pairs() const {
+  std::vector<robot::BodyPair> pairs;
+  for (const auto& link : hand_links()) pairs.emplace_back(link, object);
+  return pairs;
+}
+
+std::vector<std::string> warnings_of(const NamedWorld& world, const robot::CollisionChecker& checker) {
+  std::vector<std::string> warnings = world.robot.description().notes;
+  for (const auto& name : checker.open_meshes()) {
+    warnings.push_back(name + ": its mesh is open, so it is a surface: nothing is seen to lie inside it");
+  }
+  return warnings;
+}
+
 void require_same_joints(const SynergySet& synergies, const robot::RobotModel& hand) {
   if (synergies.joint_names == hand.joint_names()) return;
   std::string expected;

@@ -8,6 +8,7 @@
 #include "cli/json.hpp"
 #include "cli/stored.hpp"
 #include "core/synergies.hpp"
+#include "robot/collision.hpp"
 #include "robot/robot_model.hpp"
 #include "robot/scene.hpp"
 
@@ -24,12 +25,18 @@ struct NamedWorld {
 
   std::vector<std::string> hand_links() const;
   WorldKey key() const;
+  /// Every hand link with the object: what may touch while the hand closes.
+  std::vector<robot::BodyPair> hand_object_pairs() const;
 
   Eigen::Isometry3d X_RO() const { return scene.X_WR.inverse() * scene.body(object).X_WB; }
 };
 
 /// Loads them; an empty object name takes the scene's own. Throws InputError in one sentence.
 NamedWorld load_world(const std::string& robot_file, const std::string& scene_file, const std::string& object);
+
+/// What the user should know about the loaded files, a sentence each: what was ignored or assumed while loading, and
+/// the open meshes, inside of which nothing counts as a collision.
+std::vector<std::string> warnings_of(const NamedWorld& world, const robot::CollisionChecker& checker);
 
 /// Throws InputError unless the synergies are about this hand's joints, in its order.
 void require_same_joints(const SynergySet& synergies, const robot::RobotModel& hand);

@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
@@ -34,6 +37,15 @@ enum class PlanStatus {
   time_limit,
   interrupted,
 };
+
+/// In the order of the enumerators; what stored objects and documents call them.
+inline constexpr std::array<std::string_view, 8> kPlanStatusNames{
+    "solved",          "no_goals",    "start_in_collision", "start_out_of_limits",
+    "iteration_limit", "check_limit", "time_limit",         "interrupted"};
+
+inline std::string status_name(PlanStatus status) {
+  return std::string(kPlanStatusNames[static_cast<std::size_t>(status)]);
+}
 
 struct PlanResult {
   PlanStatus status = PlanStatus::no_goals;

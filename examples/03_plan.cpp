@@ -58,7 +58,7 @@ int main(int argc, char** argv) {
   const SynergyBox grasp = box_around(goal.segment(hand.first, hand.count));
 
   motion::PlannerSettings settings;
-  const motion::World world = motion::make_world(checker, robot, settings.resolution);
+  const motion::World world = motion::make_world(checker, robot, 0.02);
   const PlanResult result = motion::plan(start, pre_grasp, {{goal, grasp, 0}}, robot.joint_names(), hand, robot.lower(),
                                          robot.upper(), robot.weights(), world, settings, /*seed=*/1);
   if (result.status != PlanStatus::solved) return std::printf("no path: %s\n", result.detail.c_str()), 1;

@@ -21,8 +21,8 @@ constexpr double kBalanceWeight = 3.0;
 constexpr double kFacingDepth = 0.01;       // m
 constexpr double kPenetrationUnit = 0.005;  // m
 constexpr double kPenetrationWeight = 0.02;
-constexpr double kObstacleMargin = 0.005;  // m
-constexpr double kLimitUnit = 0.1;         // rad
+constexpr double kObstacleGap = 0.005;  // m
+constexpr double kLimitUnit = 0.1;      // rad
 constexpr double kLimitWeight = 0.5;
 constexpr double kMaxShift = 0.05;  // m
 constexpr double kMaxTurn = 0.6;    // rad
@@ -154,14 +154,14 @@ double GraspObjective::add_penetration(const Eigen::Isometry3d& X_OH) {
     const Eigen::Vector3d center = X_OH * X_HL_[link] * surface_.link_center[link];
     const double radius = surface_.link_radius[link];
     const bool near_object = target_.grid->value(center) < radius + target_.grid->spacing();
-    const double reach = radius + kObstacleMargin;
+    const double reach = radius + kObstacleGap;
     const bool near_obstacle = target_.obstacle_distance(center, reach).value < reach;
     if (!near_object && !near_obstacle) continue;
     for (const Eigen::Vector3d& p_L : surface_.sparse[link]) {
       const Eigen::Vector3d p_H = X_HL_[link] * p_L;
       const Eigen::Vector3d p_O = X_OH * p_H;
       if (near_object) penalize(link, p_H, target_.grid->query(p_O), 0.0);
-      if (near_obstacle) penalize(link, p_H, target_.obstacle_distance(p_O, kObstacleMargin), kObstacleMargin);
+      if (near_obstacle) penalize(link, p_H, target_.obstacle_distance(p_O, kObstacleGap), kObstacleGap);
     }
   }
   return cost;

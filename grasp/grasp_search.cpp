@@ -91,6 +91,7 @@ Trial run_trial(const Search& search, std::int64_t index) {
   if (contacts.size() < 3) return rejected("fewer than three contacts");
   GraspQuality quality = evaluate(contacts, convention_of(search));
   if (!quality.force_closure()) return rejected("not force closure");
+  if (!quality.epsilon) return rejected("epsilon did not converge");  // grasps are ranked by it
   GraspLimits limits{std::vector<bool>(search.hand.links().size(), false), settings.max_penetration,
                      settings.clearance_pregrasp};
   for (const Contact& contact : contacts) limits.touching[search.hand.link_index(contact.link)] = true;

@@ -35,9 +35,9 @@ struct SearchSettings {
 void validate(const SearchSettings& settings);  ///< throws std::invalid_argument naming field, value, constraint
 
 struct SearchResult {
-  std::vector<Grasp> grasps;  ///< best first (epsilon), arm_solutions empty
+  std::vector<Grasp> grasps;  ///< best first (epsilon), arm_solutions as `accept` left them
   std::int64_t trials = 0;
-  std::int64_t evaluations = 0;                  ///< objective evaluations by NLopt
+  std::int64_t evaluations = 0;                  ///< of the objective: in choosing seeds, and by NLopt
   std::map<std::string, std::int64_t> rejected;  ///< reason -> count; trials = grasps found + rejected
 };
 

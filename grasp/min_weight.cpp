@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include <Eigen/LU>
 
@@ -34,9 +35,9 @@ class Simplex {
     refactor();
   }
 
-  /// Drives the artificial columns to zero; false when they cannot be.
-  bool feasible() {
-    if (!minimize(0.0, 1.0)) return false;
+  /// Drives the artificial columns to zero; false when they cannot be, nullopt when the pivot limit was met.
+  std::optional<bool> feasible() {
+    if (!minimize(0.0, 1.0)) return std::nullopt;
     double left = 0.0;
     for (int row = 0; row < 6; ++row) left += basis_[row] < 0 ? std::abs(value_[row]) : 0.0;
     return left <= 1e-9 * scale_;
@@ -151,7 +152,9 @@ MinWeight min_weight(const Matrix6Xd& wrenches) {
   const Vector6d mean = unit * wrenches.rowwise().mean();
   const Matrix6Xd a = (-unit * wrenches).colwise() + mean;
   Simplex simplex(a, mean, 1.0);
-  if (!simplex.feasible()) return solution;
+  const std::optional<bool> feasible = simplex.feasible();
+  if (!feasible) solution.state = MinWeight::State::not_converged;
+  if (!feasible.value_or(false)) return solution;
   const bool done = simplex.optimize();
   solution.state = done ? MinWeight::State::optimal : MinWeight::State::not_converged;
   double sum = 0.0;

@@ -13,7 +13,7 @@ struct MinWeight {
   enum class State {
     optimal,
     no_balance,     ///< W a = 0, 1'a = 1 has no solution: the origin is outside the affine hull of the wrenches
-    not_converged,  ///< the pivot limit was met (rounding); value is a lower bound
+    not_converged,  ///< the pivot limit was met (rounding); value is a lower bound where weights are given
   };
   State state = State::no_balance;
   /// l*; exactly 0 when N |l*| < 1e-13: two contacts that pinch, and others that add nothing, put the origin on the

@@ -32,10 +32,11 @@ GraspQuality evaluate(const std::vector<Contact>& contacts, const QualityConvent
     if (const auto hull = wrench_hull(space.points(kMaxHullPoints))) {
       ball.inside = hull->least_offset > kTouching * space.scale();
       ball.radius = ball.inside ? hull->least_offset : 0.0;
+      ball.converged = true;
     }
   }
   quality.state = ball.inside ? ClosureState::force_closure : ClosureState::not_force_closure;
-  quality.epsilon = ball.radius;
+  if (ball.converged) quality.epsilon = ball.radius;  // else nobody knows it
   quality.direction = ball.direction;
   if (request.volume) {
     if (const auto hull = wrench_hull(space.points(kMaxHullPoints))) quality.volume = hull->volume;

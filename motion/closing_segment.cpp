@@ -29,16 +29,6 @@ World closing_world(const robot::CollisionChecker& free_space, const robot::Coll
       robot.weights(), resolution);
 }
 
-World closing_world(const robot::CollisionChecker& closing, const robot::RobotModel& robot, double resolution,
-                    const ContactLimit& contact) {
-  return make_world(
-      [&closing, &robot, contact](const Eigen::VectorXd& q) {
-        return robot.within_limits(q) && closing.free(q) &&
-               (contact.depth == nullptr || (*contact.depth)(q) <= contact.max_depth);
-      },
-      robot.weights(), resolution);
-}
-
 namespace {
 
 /// A configuration that makes these motions invalid.

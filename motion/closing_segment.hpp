@@ -26,10 +26,6 @@ World closing_world(const robot::CollisionChecker& free_space, const robot::Coll
                     const robot::RobotModel& robot, const std::vector<Contact>& contacts, double resolution,
                     const ContactLimit& contact = {});
 
-/// The same for a checker that leaves out exactly the pairs that may touch: those of one grasp's contacts.
-World closing_world(const robot::CollisionChecker& closing, const robot::RobotModel& robot, double resolution,
-                    const ContactLimit& contact = {});
-
 struct ClosingSegment {
   Eigen::MatrixXd waypoints;               ///< [2 or 3 x d] rad, pre-grasp to grasp; empty when there is none
   std::optional<Eigen::VectorXd> invalid;  ///< [d] rad, a configuration that is in the way when there is none

@@ -23,7 +23,7 @@ struct Candidate {
 
 /// Whether two arm configurations put the links at the same place.
 bool same_pose(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
-  constexpr double kSame = 1e-6;  // rad
+  constexpr double kSame = 1e-6;  // turns
   return ((a - b).array() / (2.0 * std::numbers::pi))
       .unaryExpr([](double turns) { return std::abs(turns - std::round(turns)); })
       .isZero(kSame);

@@ -55,6 +55,7 @@ class Run {
   std::optional<PlanStatus> end_condition();
   Eigen::VectorXd random_configuration();
   bool plant_roots();
+  void plant_goals();
   std::optional<Bridge> connect(int vertex_new, Graph& a, Graph& b);
   bool confirmed(const std::vector<int>& path, Graph& graph);
   bool confirmed(const Bridge& bridge);
@@ -134,27 +135,33 @@ bool Run::plant_roots() {
   }
   start_graph_.forest.add_root(query_.start.q);
   start_graph_.projections.push_back(query_.start.project);
-  int outside = 0;
-  int colliding = 0;
+  plant_goals();
+  if (!goal_of_root_.empty()) return true;
+  const auto inside = std::count_if(query_.goals.begin(), query_.goals.end(),
+                                    [&](const Root& goal) { return within_limits(query_, goal.q); });
+  const std::size_t count = query_.goals.size();
+  return refused(PlanStatus::no_goals, count == 0 ? "no goal was given"
+                                                  : "of " + std::to_string(count) + " goals, " +
+                                                        std::to_string(count - static_cast<std::size_t>(inside)) +
+                                                        " are outside the joint limits and " + std::to_string(inside) +
+                                                        " in collision");
+}
+
+/// Roots every goal that is inside the limits and free: one question for all, which a world may answer in parallel.
+void Run::plant_goals() {
+  std::vector<const Root*> inside;
   for (const Root& goal : query_.goals) {
-    if (!within_limits(query_, goal.q)) {
-      ++outside;
-    } else if (!is_free(world_, goal.q, counts_)) {
-      ++colliding;
-    } else {
-      goal_graph_.forest.add_root(goal.q);
-      goal_graph_.projections.push_back(goal.project);
-      goal_of_root_.push_back(goal.goal);
-    }
+    if (within_limits(query_, goal.q)) inside.push_back(&goal);
   }
-  if (goal_of_root_.empty()) {
-    return refused(PlanStatus::no_goals, query_.goals.empty()
-                                             ? "no goal was given"
-                                             : "of " + std::to_string(query_.goals.size()) + " goals, " +
-                                                   std::to_string(outside) + " are outside the joint limits and " +
-                                                   std::to_string(colliding) + " in collision");
+  Eigen::MatrixXd batch(static_cast<Eigen::Index>(inside.size()), query_.lower.size());
+  for (std::size_t i = 0; i < inside.size(); ++i) batch.row(static_cast<Eigen::Index>(i)) = inside[i]->q.transpose();
+  const std::vector<bool> free = inside.empty() ? std::vector<bool>() : world_.free(batch, counts_.collision_checks);
+  for (std::size_t i = 0; i < inside.size(); ++i) {
+    if (!free[i]) continue;
+    goal_graph_.forest.add_root(inside[i]->q);
+    goal_graph_.projections.push_back(inside[i]->project);
+    goal_of_root_.push_back(inside[i]->goal);
   }
-  return true;
 }
 
 /// Whether the stricter question is answered well for the motions to these vertices; removes what hangs on one that is
@@ -221,8 +228,6 @@ void validate(const PlannerSettings& settings) {
             [&] { return "PlannerSettings::" + field + " = " + std::to_string(value) + ": must be " + constraint; });
   };
   check(std::isfinite(settings.step) && settings.step > 0.0, "step", settings.step, "positive and finite (rad)");
-  check(std::isfinite(settings.resolution) && settings.resolution > 0.0, "resolution", settings.resolution,
-        "positive and finite (rad)");
   check(settings.full_space_probability >= 0.0 && settings.full_space_probability <= 1.0, "full_space_probability",
         settings.full_space_probability, "in [0, 1]");
   check(settings.minimum_step > 0.0 && settings.minimum_step < settings.step, "minimum_step", settings.minimum_step,

@@ -32,7 +32,6 @@ enum class Variant {
 struct PlannerSettings {
   Variant variant = Variant::synergy;
   double step = 0.4;                     ///< rad, epsilon of Algorithm 3 in the weighted metric
-  double resolution = 0.02;              ///< rad, spacing of checked configurations: for edge_check's world
   double full_space_probability = 0.05;  ///< share of targets not projected (docs/deviations.md, 12)
   double minimum_step = 1e-9;            ///< rad, SYNEXTEND returns nothing below it
   std::int64_t max_iterations = 100000;  ///< passes of Algorithm 2's loop

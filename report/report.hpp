@@ -119,15 +119,17 @@ struct HumanLikeness {
 
 /// One planning run: a row of Table 2 is the mean over the runs of a planner.
 struct PlanRun {
-  std::string planner;  ///< "synergy" or "rrtconnect"
+  std::string planner;   ///< "synergy" or "rrtconnect"
+  std::string settings;  ///< a few words, e.g. "step 0.4 rad"; equal for the runs of one planner
   std::uint64_t seed = 0;
   PlanResult result;                          ///< path may be empty: it is not drawn from here
+  std::optional<double> shortened_length;     ///< rad, joint metric, after the shortcuts; nullopt: unknown or unsolved
   std::vector<HumanLikeness> human_likeness;  ///< the first is the one of Table 2
 };
 
 struct PathPart {
   std::string id;
-  std::vector<PlanRun> runs;  ///< the first is the run whose path is shown
+  std::vector<PlanRun> runs;  ///< solved or not; the first is the run whose path is shown, when there is one
   std::string goal_grasp;     ///< id of the grasp that is reached; empty: unknown
   JointPath path;             ///< shortcut and closing segment included; rows from start to grasp
   Eigen::VectorXd times;      ///< [N] s; empty: not timed
@@ -165,8 +167,9 @@ struct ProvenanceItem {
 
 /// What differs from run to run. Stands between the comments run-log begin and run-log end, and nowhere else.
 struct RunPart {
-  std::string log;                         ///< text, one line per run
-  std::optional<double> planning_seconds;  ///< mean wall-clock time of the shown planner: Table 2's second column
+  std::string log;  ///< text, one line per run
+  /// Planner -> mean s of CPU per run, shortcuts and loading not included: Table 2's second column.
+  std::map<std::string, double> planning_seconds;
 };
 
 struct ReportInput {

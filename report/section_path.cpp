@@ -14,25 +14,9 @@ namespace opponens::report {
 namespace {
 
 std::string words(PlanStatus status) {
-  switch (status) {
-    case PlanStatus::solved:
-      return "solved";
-    case PlanStatus::no_goals:
-      return "no goals";
-    case PlanStatus::start_in_collision:
-      return "start in collision";
-    case PlanStatus::start_out_of_limits:
-      return "start out of limits";
-    case PlanStatus::iteration_limit:
-      return "iteration limit";
-    case PlanStatus::check_limit:
-      return "check limit";
-    case PlanStatus::time_limit:
-      return "time limit";
-    case PlanStatus::interrupted:
-      return "interrupted";
-  }
-  return "";
+  std::string name = status_name(status);
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
 }
 
 std::optional<double> valid_share(const PlanResult& result) {
@@ -52,10 +36,12 @@ std::vector<std::string> planners(const PathPart& part) {
 void planner_row(Table& table, const PathPart& part, const std::string& planner) {
   using Values = std::vector<std::optional<double>>;
   int runs = 0;
+  std::string settings;
   Values iterations, checks, valid, length, likeness;
   for (const auto& run : part.runs) {
     if (run.planner != planner) continue;
     ++runs;
+    settings = run.settings;
     if (run.result.status != PlanStatus::solved) continue;
     iterations.emplace_back(static_cast<double>(run.result.iterations));
     checks.emplace_back(static_cast<double>(run.result.collision_checks));
@@ -68,7 +54,8 @@ void planner_row(Table& table, const PathPart& part, const std::string& planner)
     return mean ? text(concat({fixed(factor * *mean, decimals), unit})) : text("n/a");
   };
   const double success = static_cast<double>(iterations.size()) / std::max(1, runs);
-  table.row({text(concat({"here, ", planner, " (", std::to_string(runs), runs == 1 ? " run)" : " runs)"})),
+  const std::string count = concat({std::to_string(runs), runs == 1 ? " run" : " runs"});
+  table.row({text(concat({"here, ", planner, " (", count, settings.empty() ? "" : ", ", settings, ")"})),
              text(percent(success, 0)),
              {"<a href=\"#run\">see Run</a>"},
              cell(iterations, 0, 1.0, ""),
@@ -95,33 +82,39 @@ Markup table_two(const PathPart& part) {
       "human-likeness is unpublished (ours is named in the documentation): read the columns for what they measure, not "
       "as "
       "a race. Valid segments: here the share of the extensions that grew a tree, in the paper of the iterations. Path "
-      "length: sum of weighted joint "
-      "movements.");
+      "length: sum of weighted joint movements of the path as planned, before the shortcuts. Success rate: solved runs "
+      "of all runs of the planner's newest plan command with the same robot, scene, object and grasps.");
   return out;
 }
 
-Markup run_table(const PathPart& part) {
-  Table table("Runs", {"planner", "seed", "status", "goal", "iterations", "collision checks", "length (rad)",
-                       "length, sum of joints (rad)", "human-likeness, with its reference"});
-  for (const auto& run : part.runs) {
-    const auto& result = run.result;
-    std::string likeness;
-    for (const auto& item : run.human_likeness) {
-      likeness += concat({likeness.empty() ? "" : "; ", item.value ? concat({fixed(*item.value, 1), " %"}) : "none",
-                          " (", item.reference, ")"});
-    }
-    table.row({text(run.planner), text(std::to_string(run.seed)),
-               badge(result.status == PlanStatus::solved, words(result.status)), text(std::to_string(result.goal)),
-               text(grouped(result.iterations)), text(grouped(result.collision_checks)), text(fixed(result.length, 2)),
-               text(fixed(result.length_l1, 2)), text(likeness)});
+void run_row(Table& table, const PlanRun& run) {
+  const auto& result = run.result;
+  const bool solved = result.status == PlanStatus::solved;
+  std::string likeness;
+  for (const auto& item : run.human_likeness) {
+    likeness += concat({likeness.empty() ? "" : "; ", item.value ? concat({fixed(*item.value, 1), " %"}) : "none", " (",
+                        item.reference, ")"});
   }
+  const auto length = [&](std::optional<double> value) { return text(solved && value ? fixed(*value, 2) : "n/a"); };
+  table.row({text(run.planner), text(std::to_string(run.seed)), badge(solved, words(result.status)),
+             text(solved ? std::to_string(result.goal) : "n/a"), text(grouped(result.iterations)),
+             text(grouped(result.collision_checks)), length(result.length), length(result.length_l1),
+             length(run.shortened_length), text(likeness)});
+}
+
+Markup run_table(const PathPart& part) {
+  Table table("Runs", {"planner", "seed", "status", "goal", "iterations", "collision checks",
+                       "planned length (rad, joint metric)", "planned length (rad, sum of joints)",
+                       "shortened length (rad, joint metric)", "human-likeness, with its reference"});
+  for (const auto& run : part.runs) run_row(table, run);
   Markup out = table.str();
   for (const auto& run : part.runs) {
     if (!run.result.detail.empty()) {
       out += note(concat({run.planner, ", seed ", std::to_string(run.seed), ": ", run.result.detail}));
     }
   }
-  return out;
+  constexpr std::size_t kFew = 12;
+  return part.runs.size() <= kFew ? out : details(concat({"all ", std::to_string(part.runs.size()), " runs"}), out);
 }
 
 /// A place on the path: row + fraction of the way to the next one.

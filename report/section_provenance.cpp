@@ -141,9 +141,9 @@ Markup verification_section(const ReportInput& input) {
 Markup run_section(const ReportInput& input) {
   Markup out{concat({kRunLogBegin, "\n"})};
   if (input.run) {
-    if (input.run->planning_seconds) {
-      out += paragraph(
-          concat({"Planning time (Table 2's second column): ", fixed(*input.run->planning_seconds, 3), " s."}));
+    for (const auto& [planner, seconds] : input.run->planning_seconds) {
+      out += paragraph(concat({"Planning time (Table 2's second column), ", planner, ": ", fixed(seconds, 3),
+                               " s of CPU per run in the mean, without loading and shortcuts."}));
     }
     if (!input.run->log.empty()) out.html += concat({"<pre>", escape(input.run->log), "</pre>\n"});
   } else {

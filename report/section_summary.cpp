@@ -61,8 +61,11 @@ std::string path_words(const PathPart& part) {
   const auto& run = part.runs.front();
   if (run.result.status != PlanStatus::solved)
     return concat({"none found by ", run.planner, ", seed ", std::to_string(run.seed)});
-  return concat({fixed(run.result.length_l1, 2), " rad (sum of weighted joint movements) by ", run.planner, ", seed ",
-                 std::to_string(run.seed)});
+  std::string words = concat({"as planned ", fixed(run.result.length, 2), " rad in the joint metric, ",
+                              fixed(run.result.length_l1, 2), " rad as the sum of weighted joint movements"});
+  if (run.shortened_length)
+    words += concat({"; shortened ", fixed(*run.shortened_length, 2), " rad in the joint metric"});
+  return concat({words, "; by ", run.planner, ", seed ", std::to_string(run.seed)});
 }
 
 std::string likeness_words(const PathPart& part) {
@@ -79,8 +82,10 @@ std::string likeness_words(const PathPart& part) {
 Markup verdict(const VerifyPart& part) {
   const auto failed =
       std::count_if(part.verdicts.begin(), part.verdicts.end(), [](const Verdict& v) { return !v.passed; });
-  if (failed == 0) return badge(true, concat({"all ", std::to_string(part.checked), " objects passed"}));
-  return badge(false, concat({std::to_string(failed), " of ", std::to_string(part.checked), " objects failed"}));
+  const std::string hashes = concat({"; ", std::to_string(part.checked), " hashes agree"});
+  const std::string all = std::to_string(part.verdicts.size());
+  if (failed == 0) return badge(true, concat({all, " grasps and paths passed", hashes}));
+  return badge(false, concat({std::to_string(failed), " of ", all, " grasps and paths failed", hashes}));
 }
 
 }  // namespace

@@ -164,6 +164,13 @@ Joint joint_of(const urdf::Joint& source, const std::filesystem::path& file, std
   if (!std::isfinite(joint.lower) || !std::isfinite(joint.upper) || !std::isfinite(joint.velocity)) {
     fail_urdf(file, element + ": limit is not finite");
   }
+  if (continuous && !source.limits) {
+    joint.velocity = std::numbers::pi;
+    notes.push_back(element + " is continuous and has no <limit>: its velocity is taken to be at most pi rad/s");
+  }
+  if (!(joint.velocity > 0.0)) {
+    fail_urdf(file, element + ": velocity limit " + std::to_string(joint.velocity) + " must be positive");
+  }
   if (joint.lower > joint.upper) fail_urdf(file, element + ": lower limit is above the upper limit");
   if (source.mimic) {
     joint.mimic = Mimic{source.mimic->joint_name, source.mimic->multiplier, source.mimic->offset};

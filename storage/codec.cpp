@@ -15,9 +15,6 @@ namespace {
 
 constexpr std::string_view kLabel = "label.";
 constexpr std::array<std::string_view, 2> kOrigins{"recorded", "simulated"};
-constexpr std::array<std::string_view, 8> kStatuses{
-    "solved",          "no_goals",    "start_in_collision", "start_out_of_limits",
-    "iteration_limit", "check_limit", "time_limit",         "interrupted"};
 
 void encode_group(Record& record, const std::string& prefix, const SynergyGroup& group) {
   auto& fields = record.fields;
@@ -130,7 +127,7 @@ SynergySet decode_synergy_set(const Record& record) {
 Record encode(const PlanResult& result, const Provenance& provenance) {
   Record record{"path", "path to goal " + std::to_string(result.goal), provenance, {}};
   auto& fields = record.fields;
-  fields["status"] = enum_text(kStatuses, result.status);
+  fields["status"] = status_name(result.status);
   fields["joint_names"] = result.path.joint_names;
   fields["waypoints"] = result.path.waypoints;
   fields["goal"] = std::int64_t{result.goal};
@@ -147,7 +144,7 @@ Record encode(const PlanResult& result, const Provenance& provenance) {
 PlanResult decode_plan_result(const Record& record) {
   const FieldReader read(record, "path");
   PlanResult result;
-  result.status = read.enumerator<PlanStatus>("status", kStatuses);
+  result.status = read.enumerator<PlanStatus>("status", kPlanStatusNames);
   result.path.joint_names = read.texts("joint_names");
   result.path.waypoints = read.matrix("waypoints");
   result.goal = read.small_integer("goal");

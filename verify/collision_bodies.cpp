@@ -172,17 +172,19 @@ std::set<CollisionBodies::Pair> CollisionBodies::colliding() const {
   return found;
 }
 
-double CollisionBodies::clearance(const std::set<Pair>& except, double horizon) const {
-  double least = horizon;
+CollisionBodies::Clearance CollisionBodies::clearance(const std::set<Pair>& except, double horizon) const {
+  Clearance least{horizon, {}};
   for (const auto& [i, j] : data_->pairs) {
     const Part& a = data_->parts[static_cast<std::size_t>(i)];
     const Part& b = data_->parts[static_cast<std::size_t>(j)];
-    if (except.count({a.name, b.name}) == 1 || a.object.getAABB().distance(b.object.getAABB()) >= least) continue;
+    if (except.count({a.name, b.name}) == 1 || a.object.getAABB().distance(b.object.getAABB()) >= least.distance)
+      continue;
     fcl::DistanceRequestd request;
-    fcl::DistanceResultd result(least);  // only nearer pairs of triangles are descended to
+    fcl::DistanceResultd result(least.distance);  // only nearer pairs of triangles are descended to
     // Between triangles: FCL's distance between primitives (GJK) is off by millimetres for some poses of cylinders.
     fcl::distance(&a.surface, &b.surface, request, result);
-    least = std::min(least, std::max(0.0, result.min_distance));
+    const double distance = std::max(0.0, result.min_distance);
+    if (distance < least.distance) least = {distance, {a.name, b.name}};
   }
   return least;
 }

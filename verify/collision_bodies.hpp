@@ -27,10 +27,14 @@ class CollisionBodies {
   using Pair = std::pair<std::string, std::string>;  ///< link, and link or scene body
   /// Pairs that collide, but for the allowed ones of the robot.
   std::set<Pair> colliding() const;
+  struct Clearance {
+    double distance;  ///< m
+    Pair pair;        ///< empty names when nothing is below the horizon
+  };
   /// Least distance of any pair that is neither allowed nor in `except`, m; only what is below `horizon` is looked for.
   /// Between triangulated surfaces with 64 segments around, so for round shapes of radius r it may be too large by
   /// 0.0012 r each. Only for configurations that are free: a surface within a solid has a distance too.
-  double clearance(const std::set<Pair>& except, double horizon) const;
+  Clearance clearance(const std::set<Pair>& except, double horizon) const;
   /// Deepest point of the link in the body or of the body in the link, m: surface samples of the link every 2 mm, and
   /// the body's vertices.
   double penetration(const std::string& link, const std::string& body) const;

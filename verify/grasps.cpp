@@ -4,41 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
-#include <Eigen/SVD>
-
 #include "core/require.hpp"
-#include "verify/nonnegative_least_squares.hpp"
+#include "verify/palm_pose.hpp"
 #include "verify/solid.hpp"
 
 namespace opponens::verify {
 namespace {
-
-bool in_friction_cone(const Eigen::Vector3d& force, const Eigen::Vector3d& n, double mu) {
-  const double along = force.dot(n);
-  return along > 0.0 && (1.0 + mu * mu) * along * along >= force.squaredNorm() * n.squaredNorm() * (1.0 - 1e-12);
-}
-
-/// Forces of one contact, [3] each.
-std::vector<Eigen::Vector3d> contact_forces(const Contact& contact, const QualityConvention& convention) {
-  const Eigen::Vector3d n = contact.n_O.normalized();
-  if (convention.model == ContactModel::frictionless) return {n};
-  // The convention's tangents: n x X, or n x Z where n is along X.
-  Eigen::Vector3d t_x(0.0, n.z(), -n.y());
-  if (t_x.norm() < 1e-6) t_x = Eigen::Vector3d(n.y(), -n.x(), 0.0);
-  t_x.normalize();
-  const Eigen::Vector3d t_y(n.y() * t_x.z() - n.z() * t_x.y(), n.z() * t_x.x() - n.x() * t_x.z(),
-                            n.x() * t_x.y() - n.y() * t_x.x());
-  std::vector<Eigen::Vector3d> forces;
-  const int count = 2 * std::max(convention.edges, 3);
-  for (int j = 0; j < count; ++j) {
-    const double angle = 2.0 * std::numbers::pi * j / count;
-    forces.push_back(n + contact.mu * (std::cos(angle) * t_x + std::sin(angle) * t_y));
-    require(in_friction_cone(forces.back(), n, contact.mu), "positive_span: an edge left the friction cone");
-  }
-  return forces;
-}
 
 void check_pose(const Eigen::Isometry3d& X, const std::string& name, double tolerance, Verdict& verdict) {
   const Eigen::Matrix3d R = X.linear();
@@ -160,29 +134,24 @@ void check_contacts(const Grasp& grasp, const GraspContext& context, const Grasp
 
 }  // namespace
 
-PositiveSpan positive_span(const std::vector<Contact>& contacts, const QualityConvention& convention) {
-  std::vector<Eigen::Matrix<double, 6, 1>> columns;
-  for (const Contact& contact : contacts) {
-    const Eigen::Vector3d arm = (contact.p_OC - convention.origin) / convention.rho;
-    for (const Eigen::Vector3d& force : contact_forces(contact, convention)) {
-      Eigen::Matrix<double, 6, 1> wrench;
-      wrench << force, arm.y() * force.z() - arm.z() * force.y(), arm.z() * force.x() - arm.x() * force.z(),
-          arm.x() * force.y() - arm.y() * force.x();
-      columns.push_back(wrench.normalized());
+void check_arm_solutions(const Grasp& grasp, const robot::RobotModel& robot, const Eigen::Isometry3d& X_RO,
+                         double tolerance, Verdict& verdict) {
+  const auto check = [&](const Eigen::VectorXd& q_arm, const Eigen::VectorXd& q_hand, const Eigen::Isometry3d& X_OH,
+                         const std::string& name) {
+    if (q_arm.size() != robot.arm().count || q_hand.size() != robot.hand().count || !q_arm.allFinite()) {
+      verdict.fail(name + " has another number of joints than the robot, or one that is not finite");
+      return;
     }
+    Eigen::VectorXd q(robot.dof());
+    q << q_arm, q_hand;
+    if (!robot.within_limits(q, tolerance)) verdict.fail(name + " is outside the joint limits");
+    check_palm(robot, q, X_RO * X_OH, name, tolerance, verdict);
+  };
+  for (std::size_t i = 0; i < grasp.arm_solutions.size(); ++i) {
+    const std::string name = "arm solution " + std::to_string(i);
+    check(grasp.arm_solutions[i].q_pregrasp, grasp.q_pregrasp, grasp.X_OH_pregrasp, name + ", pre-grasp,");
+    check(grasp.arm_solutions[i].q_grasp, grasp.q_grasp, grasp.X_OH, name + ", grasp,");
   }
-  PositiveSpan result;
-  result.wrenches = static_cast<int>(columns.size());
-  if (columns.size() < 7) return result;  // fewer never span R^6 positively
-  Eigen::MatrixXd W(6, result.wrenches);
-  for (std::size_t i = 0; i < columns.size(); ++i) W.col(static_cast<Eigen::Index>(i)) = columns[i];
-  const Eigen::VectorXd singular = W.jacobiSvd().singularValues();
-  result.rank_ratio = singular[5] / singular[0];
-  // a = 1 + b, b >= 0: W a = 0 becomes W b = -W 1.
-  const NonnegativeSolution solution = nonnegative_least_squares(W, -W.rowwise().sum());
-  result.residual = solution.residual / (static_cast<double>(result.wrenches) + solution.x.sum());
-  result.spans = solution.converged && result.rank_ratio > 1e-8 && result.residual < 1e-10;
-  return result;
 }
 
 Verdict check_grasp(const Grasp& grasp, const GraspContext& context, const GraspCheckSettings& settings) {
@@ -196,20 +165,7 @@ Verdict check_grasp(const Grasp& grasp, const GraspContext& context, const Grasp
   if (!verdict.ok) return verdict;  // surfaces and wrenches of a grasp that is not itself would only add noise
   if (!check_contact_form(grasp, settings.tolerance, verdict)) return verdict;
   check_contacts(grasp, context, settings, verdict);
-  if (!(grasp.quality.convention.rho > 0.0)) {
-    verdict.fail("the quality's torque scale rho = " + number(grasp.quality.convention.rho) + " m is not positive");
-    return verdict;
-  }
-  const PositiveSpan span = positive_span(grasp.contacts, grasp.quality.convention);
-  verdict.checked = span.wrenches;
-  if (grasp.quality.force_closure() != span.spans) {
-    verdict.fail(std::string(grasp.quality.force_closure() ? "stored as force closure, but its"
-                                                           : "not stored as force closure, but its") +
-                 " wrenches " + (span.spans ? "positively span" : "do not positively span") + " the space (residual " +
-                 number(span.residual) + ", rank ratio " + number(span.rank_ratio) + ")");
-  } else if (!span.spans) {
-    verdict.fail("not a force-closure grasp");
-  }
+  verdict.checked = check_quality(grasp.contacts, grasp.quality, verdict);
   return verdict;
 }
 

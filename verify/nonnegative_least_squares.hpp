@@ -9,7 +9,7 @@ namespace opponens::verify {
 struct NonnegativeSolution {
   Eigen::VectorXd x;       ///< [n], >= 0
   double residual = 0.0;   ///< |A x - b|
-  bool converged = false;  ///< the optimality conditions hold to the tolerance
+  bool converged = false;  ///< the optimality conditions hold to the tolerance, or rounding lets nothing more be gained
 };
 
 /// min |A x - b| subject to x >= 0: the active set method of Lawson and Hanson (Solving Least Squares Problems, 1974,

@@ -7,6 +7,7 @@
 
 #include "core/require.hpp"
 #include "verify/collision_bodies.hpp"
+#include "verify/palm_pose.hpp"
 
 namespace opponens::verify {
 namespace {
@@ -77,15 +78,20 @@ class Walk {
         continue;
       }
       free = false;
+      note_clearance({0.0, pair});
       report("collision of " + pair.first + " and " + pair.second + " " + where);
     }
-    if (!free) verdict_.worst_clearance = 0.0;
-    if (free && with_clearance) {
-      verdict_.worst_clearance = bodies_.clearance(closing ? contacts_ : none_, verdict_.worst_clearance);
-    }
+    if (free && with_clearance)
+      note_clearance(bodies_.clearance(closing ? contacts_ : none_, verdict_.worst_clearance));
   }
 
  private:
+  void note_clearance(const CollisionBodies::Clearance& found) {
+    if (found.distance >= verdict_.worst_clearance) return;
+    verdict_.worst_clearance = found.distance;
+    verdict_.worst_pair = found.pair;
+  }
+
   void check_depth(const CollisionBodies::Pair& pair, const std::string& where) {
     const double depth = bodies_.penetration(pair.first, pair.second);
     verdict_.worst_contact_penetration = std::max(verdict_.worst_contact_penetration, depth);
@@ -123,12 +129,31 @@ void walk_path(const JointPath& path, const PathClaim& claim, const robot::Robot
     const auto count = std::max<Eigen::Index>(
         1, static_cast<Eigen::Index>(std::ceil(weighted_length(robot.weights(), step) / settings.spacing)));
     const bool closing = claim.closing_from >= 0 && i > claim.closing_from;
-    for (Eigen::Index k = 1; k <= count; ++k) {
-      const double fraction = static_cast<double>(k) / static_cast<double>(count);
-      walk.visit(from + fraction * step,
-                 "between waypoints " + std::to_string(i - 1) + " and " + std::to_string(i) + " at " + number(fraction),
-                 closing, k % every == 0 || k == count);
+    const std::string between = "between waypoints " + std::to_string(i - 1) + " and " + std::to_string(i) + " at ";
+    for (Eigen::Index k = 0; k < count; ++k) {
+      // The middles of the parts: not the fractions that a planner's own check has been to.
+      const double fraction = (static_cast<double>(k) + 0.5) / static_cast<double>(count);
+      walk.visit(from + fraction * step, between + number(fraction), closing, k % every == 0);
     }
+    walk.visit(path.waypoints.row(i).transpose(), "at waypoint " + std::to_string(i), closing, true);
+  }
+}
+
+void check_ends(const JointPath& path, const PathClaim& claim, const robot::RobotModel& robot,
+                const robot::Scene& scene, const PathCheckSettings& settings, Verdict& verdict) {
+  const Eigen::Index last = path.waypoints.rows() - 1;
+  const Eigen::Index pregrasp = claim.closing_from >= 0 ? claim.closing_from : last;
+  check_configuration(path, 0, claim.start, "start", settings.tolerance, verdict);
+  check_configuration(path, pregrasp, claim.goal, "pre-grasp", settings.tolerance, verdict);
+  if (claim.grasp) check_configuration(path, last, *claim.grasp, "grasp", settings.tolerance, verdict);
+  const Eigen::Isometry3d X_RW = scene.X_WR.inverse();
+  if (claim.X_WH_pregrasp) {
+    check_palm(robot, path.waypoints.row(pregrasp).transpose(), X_RW * *claim.X_WH_pregrasp, "the path's pre-grasp",
+               settings.pose_tolerance, verdict);
+  }
+  if (claim.X_WH_grasp) {
+    check_palm(robot, path.waypoints.row(last).transpose(), X_RW * *claim.X_WH_grasp, "the path's end",
+               settings.pose_tolerance, verdict);
   }
 }
 
@@ -137,16 +162,11 @@ void walk_path(const JointPath& path, const PathClaim& claim, const robot::Robot
 Verdict check_path(const JointPath& path, const PathClaim& claim, const robot::RobotModel& robot,
                    const robot::Scene& scene, const PathCheckSettings& settings) {
   require(settings.spacing > 0.0 && settings.clearance_spacing >= settings.spacing && settings.max_penetration >= 0.0 &&
-              settings.tolerance >= 0.0,
+              settings.tolerance >= 0.0 && settings.pose_tolerance >= 0.0,
           "PathCheckSettings: spacing must be positive, clearance_spacing at least that, the others >= 0");
   Verdict verdict;
   if (!check_form(path, claim, robot, verdict)) return verdict;
-  const Eigen::Index pregrasp = claim.closing_from >= 0 ? claim.closing_from : path.waypoints.rows() - 1;
-  check_configuration(path, 0, claim.start, "start", settings.tolerance, verdict);
-  check_configuration(path, pregrasp, claim.goal, "pre-grasp", settings.tolerance, verdict);
-  if (claim.grasp) {
-    check_configuration(path, path.waypoints.rows() - 1, *claim.grasp, "grasp", settings.tolerance, verdict);
-  }
+  check_ends(path, claim, robot, scene, settings, verdict);
   check_limits(path, robot, std::max(settings.tolerance, 1e-9), verdict);
   Walk walk(claim, robot, scene, settings, verdict);
   walk_path(path, claim, robot, settings, walk);

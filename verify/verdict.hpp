@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace opponens::verify {
@@ -14,6 +15,7 @@ struct Verdict {
   bool ok = true;
   std::vector<std::string> reasons;                                  ///< one sentence each, with the values
   double worst_clearance = std::numeric_limits<double>::infinity();  ///< m, paths: least distance found; 0: collision
+  std::pair<std::string, std::string> worst_pair;                    ///< paths: the bodies at that distance
   double worst_contact_penetration = 0.0;  ///< m, paths: deepest contact on the closing segment
   std::int64_t checked = 0;                ///< paths: configurations evaluated; grasps: wrenches
 

@@ -3,15 +3,12 @@
 #include "distance.hpp"
 
 #include <algorithm>
-#include <stdexcept>
-#include <variant>
+#include <limits>
+
+#include "grasp/body_distance.hpp"
 
 namespace simulated_postures {
 namespace {
-
-using opponens::robot::Box;
-using opponens::robot::Cylinder;
-using opponens::robot::Sphere;
 
 template <typename Distance>
 double least_on_segment(const Eigen::Vector3d& a, const Eigen::Vector3d& b, Distance&& distance) {
@@ -37,24 +34,13 @@ double to_segment(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eige
 
 }  // namespace
 
-double signed_distance(const opponens::robot::Shape& shape, const Eigen::Vector3d& p) {
-  if (const auto* sphere = std::get_if<Sphere>(&shape)) return p.norm() - sphere->radius;
-  if (const auto* box = std::get_if<Box>(&shape)) {
-    const Eigen::Vector3d out = p.cwiseAbs() - 0.5 * box->size;
-    return out.cwiseMax(0.0).norm() + std::min(out.maxCoeff(), 0.0);
-  }
-  if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
-    const Eigen::Vector2d out(p.head<2>().norm() - cylinder->radius, std::abs(p.z()) - 0.5 * cylinder->length);
-    return out.cwiseMax(0.0).norm() + std::min(out.maxCoeff(), 0.0);
-  }
-  throw std::invalid_argument("simulated_postures: objects are boxes, spheres and cylinders");
-}
-
 double signed_distance(const opponens::robot::Geometry& body, const Eigen::Isometry3d& X_WB, const Capsule& capsule,
                        const Eigen::Isometry3d& X_WL) {
   const Eigen::Isometry3d X_GL = (X_WB * body.X_BG).inverse() * X_WL;
+  const opponens::grasp::BodyDistance distance({{body.shape, Eigen::Isometry3d::Identity()}});
+  constexpr double kExact = std::numeric_limits<double>::infinity();
   return least_on_segment(X_GL * capsule.a, X_GL * capsule.b,
-                          [&](const Eigen::Vector3d& p) { return signed_distance(body.shape, p); }) -
+                          [&](const Eigen::Vector3d& p) { return distance.query(p, kExact).value; }) -
          capsule.radius;
 }
 

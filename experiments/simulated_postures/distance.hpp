@@ -19,12 +19,8 @@ struct Capsule {
   double radius = 0.0;
 };
 
-/// Exact signed distance of a point, in the shape's frame, to a box, sphere or capped cylinder; negative inside. m.
-/// Throws std::invalid_argument for a mesh.
-double signed_distance(const opponens::robot::Shape& shape, const Eigen::Vector3d& p);
-
 /// Signed distance of a capsule to a shape: along the capsule's line the distance to a convex shape is a convex
-/// function, so its least value is found by ternary search, to 1e-7 m.
+/// function, so its least value is found by ternary search, to 1e-7 m. Boxes, spheres and cylinders are exact.
 double signed_distance(const opponens::robot::Geometry& body, const Eigen::Isometry3d& X_WB, const Capsule& capsule,
                        const Eigen::Isometry3d& X_WL);
 

@@ -95,6 +95,11 @@ class BadInput(unittest.TestCase):
         self.refuse(2, ["allegro_right.urdf", "wobbly"], "retarget", "--store", self.store, "--hand", hand)
         hand = self.broken_hand([("allegro_right.urdf", "<geometry>", '<geometry><mesh filename="gone.stl"/></geometry>'
                                   '</collision><collision><geometry>')])
+        hand = self.broken_hand([("allegro_right.urdf", 'velocity="', 'velocity="-')])
+        self.refuse(2, ["allegro_right.urdf", "joint", "velocity limit", "must be positive"], "retarget", "--store",
+                    self.store, "--hand", hand)
+        hand = self.broken_hand([("allegro_right.urdf", "<geometry>", '<geometry><mesh filename="gone.stl"/></geometry>'
+                                  '</collision><collision><geometry>')])
         self.refuse(2, ["gone.stl"], "retarget", "--store", self.store, "--hand", hand)
 
     def test_scenes(self):
@@ -111,6 +116,8 @@ class BadInput(unittest.TestCase):
             self.assertEqual(code, 2, arguments)
             self.assertEqual(out, "")
             self.assertTrue(err)
+        for arguments in (["fly"], ["fly", "--help"], ["quality", "x"]):
+            self.refuse(2, [arguments[0] + ": no such command"], *arguments)
         self.refuse(2, ["nobody"], "grasp", "--store", self.store, "--group", "nobody")
         self.refuse(2, ["opponens grasp"], "plan", "--store", self.store)
 

@@ -7,15 +7,19 @@ import math
 import pathlib
 import re
 import shutil
+import signal
 import tempfile
+import time
 import unittest
 from html.parser import HTMLParser
 
 import h5py
 
-from support import HEADER, SOURCE, data_set, must, rows, run, snapshot, without_run_log
+from support import HEADER, SOURCE, data_set, must, rows, run, snapshot, start, without_run_log
 
 SCENE = "models/scenes/cylinder_shelf.yaml"
+PROFILE = "[[0.03, 0], [0.03, 0.06], [0.03, 0.12], [0.03, 0.18]]"
+THICKER = "[[0.036, 0], [0.036, 0.06], [0.036, 0.12], [0.036, 0.18]]"  # the fingertips would close 6 mm into it
 
 
 def flow(folder, threads, seed=3):
@@ -95,6 +99,7 @@ class Pipeline(unittest.TestCase):
         self.assertEqual(verify["failed"], [])
         self.assertGreater(verify["checked"], 4)
         self.assertGreater(verify["worst_clearance_m"], 0.0)
+        self.assertIn(" and ", verify["worst_pair"])
 
     def test_both_planners_answer(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -103,6 +108,100 @@ class Pipeline(unittest.TestCase):
             document = must("plan", "--store", store, "--scene", SCENE, "--planner", "rrtconnect")
             self.assertEqual(document["runs"][0]["status"], "solved")
             self.assertEqual(must("verify", "--store", store)["failed"], [])
+
+    def copied(self, folder):
+        store = pathlib.Path(folder) / "store"
+        shutil.copytree(self.two / "store", store)
+        return store
+
+    def test_a_coarsely_planned_path_is_not_checked_coarsely(self):
+        with tempfile.TemporaryDirectory() as folder:
+            store = self.copied(folder)
+            coarse = must("plan", "--store", store, "--scene", SCENE, "--resolution", 1.0, "--runs", 10)["ids"]
+            document = must("verify", "--store", store, code=1)
+            failed = {one["id"]: one["reason"] for one in document["failed"]}
+            self.assertTrue(failed)
+            self.assertLessEqual(set(failed), set(coarse))
+            for reason in failed.values():
+                self.assertIn("collision of", reason)
+
+    def test_every_run_is_recorded_the_failed_ones_too(self):
+        with tempfile.TemporaryDirectory() as folder:
+            store = self.copied(folder)
+            world = ("--store", store, "--scene", SCENE, "--runs", 8)
+            limited = must("plan", *world, "--planner", "rrtconnect", "--max-checks", 700, code=1)
+            statuses = [one["status"] for one in limited["runs"]]
+            self.assertEqual(set(statuses), {"solved", "check_limit"})
+            record = must("show", limited["plan_runs"], "--store", store)["object"]
+            self.assertEqual(record["kind"], "plan_runs")
+            runs = json.loads(record["fields"]["runs"])
+            self.assertEqual([one["status"] for one in runs], statuses)
+            self.assertEqual([one["path"] for one in runs if one["path"]], limited["ids"])
+            self.assertFalse(any("seconds" in key for one in runs for key in one))
+            page = store.parent / "report.html"
+            must("report", "--store", store, "--out", page)
+            text = page.read_text()
+            share = f"{100 * statuses.count('solved') / 8:.0f} %"
+            row = text[text.index("here, rrtconnect (8 runs"):]
+            self.assertIn(share, row[:row.index("</tr>")])
+            self.assertIn("here, synergy (2 runs, step 0.4 rad, resolution 0.02 rad)", text)
+            self.assertIn(limited["ids"][-1], text)  # the newest path is the one that is shown
+            log = (store / "runs.jsonl").read_text().splitlines()
+            seconds = [json.loads(line) for line in log if "planner_cpu_seconds" in line][-1]
+            self.assertEqual(seconds["planner"], "rrtconnect")
+            self.assertEqual(len(seconds["planner_cpu_seconds"]), 8)
+            mean = sum(seconds["planner_cpu_seconds"]) / 8
+            self.assertIn(f"rrtconnect: {mean:.3f} s of CPU per run", text)
+
+    def test_an_interrupted_plan_keeps_its_finished_runs(self):
+        with tempfile.TemporaryDirectory() as folder:
+            store = self.copied(folder)
+            before = {one["id"] for one in must("show", "--store", store)["objects"]}
+            program = start("plan", "--store", store, "--scene", SCENE, "--runs", 100000, "--seed", 100, "--threads", 2)
+            time.sleep(8)
+            program.send_signal(signal.SIGINT)
+            _, err = program.communicate(timeout=120)
+            self.assertEqual(program.returncode, 130, err)
+            self.assertIn("finished is kept", err)
+            new = [one for one in must("show", "--store", store)["objects"] if one["id"] not in before]
+            kept = [one["id"] for one in new if one["kind"] == "path"]
+            self.assertTrue(kept)
+            record = must("show", [one["id"] for one in new if one["kind"] == "plan_runs"][0], "--store", store)
+            runs = json.loads(record["object"]["fields"]["runs"])
+            self.assertEqual([one["path"] for one in runs if one["path"]], kept)
+            self.assertNotIn("interrupted", {one["status"] for one in runs})
+
+    def test_goals_that_the_hand_cannot_close_from_are_left_out(self):
+        with tempfile.TemporaryDirectory() as folder:
+            store = self.copied(folder)
+            scene = pathlib.Path(folder) / SCENE
+            scene.parent.mkdir(parents=True)
+            text = (SOURCE / SCENE).read_text()
+            self.assertIn(PROFILE, text)
+            scene.write_text(text.replace(PROFILE, THICKER, 1))
+            code, out, err = run("plan", "--store", store, "--scene", SCENE, "--json", cwd=folder)
+            self.assertEqual(code, 1, err)
+            document = json.loads(out)
+            self.assertEqual(document["runs"][0]["status"], "no_goals")
+            self.assertIn("none has a valid closing segment", document["runs"][0]["detail"])
+            self.assertIn("goals left out", document["warnings"][-1])
+            self.assertIn("goals left out", err)
+
+    def test_a_plan_with_a_wrong_robot_is_refused_on_every_thread(self):
+        # Not by an exception that ends the program on a worker thread.
+        with tempfile.TemporaryDirectory() as folder:
+            store = self.copied(folder)
+            models = pathlib.Path(folder) / "models"
+            shutil.copytree(SOURCE / "models" / "ur5_allegro", models / "ur5_allegro")
+            urdf = next(file for file in (models / "ur5_allegro").glob("*.urdf") if "ur5" in file.name)
+            text = urdf.read_text()
+            at = text.index('velocity="')
+            urdf.write_text(text[:at] + 'velocity="0" was="' + text[at + 10:])
+            for threads in (1, 2):
+                code, _, err = run("plan", "--store", store, "--scene", SCENE, "--runs", 4, "--threads", threads, cwd=folder)
+                self.assertEqual(code, 2, err)
+                self.assertIn(urdf.name, err)
+                self.assertIn("velocity", err)
 
     def test_why_leads_back_to_the_recordings(self):
         path = self.documents["plan"]["ids"][0]
@@ -207,6 +306,14 @@ class Pipeline(unittest.TestCase):
             code, _, err = run("plan", "--store", store, "--scene", scene)
             self.assertEqual(code, 2, err)
 
+    def test_rejections_are_told_in_short(self):
+        with tempfile.TemporaryDirectory() as folder:
+            store = self.copied(folder)
+            code, out, _ = run("grasp", "--store", store, "--scene", SCENE, "--group", 1, "--max-trials", 64, "--min-trials", 0,
+                               "--seed", 77, "--count", 1000)
+            self.assertIn(code, (0, 1))
+            self.assertLess(max(len(line) for line in out.splitlines()), 400)
+
 
 class Recordings(unittest.TestCase):
     def setUp(self):
@@ -264,6 +371,38 @@ class Recordings(unittest.TestCase):
             self.assertLessEqual({"models/ur5_allegro/allegro_right.urdf", "models/ur5_allegro/allegro_right.yaml",
                                   "models/human_hand/human_hand.urdf", "models/human_hand/human_hand.yaml"},
                                  set(origin["files"]))
+
+
+class Demo(unittest.TestCase):
+    def test_leaves_a_store_of_others_alone(self):
+        with tempfile.TemporaryDirectory() as folder:
+            precious = pathlib.Path(folder) / "store" / "precious.h5"
+            precious.parent.mkdir()
+            precious.write_text("mine")
+            code, _, err = run("demo", "--out", folder)
+            self.assertEqual(code, 2)
+            self.assertIn("was not made by opponens demo", err)
+            self.assertEqual([file.name for file in pathlib.Path(folder).iterdir()], ["store"])
+            self.assertEqual(precious.read_text(), "mine")
+
+    def test_whole_and_again_in_its_own_folder(self):
+        with tempfile.TemporaryDirectory() as folder:
+            out = pathlib.Path(folder) / "out"
+            document = must("demo", "--out", out)
+            self.assertEqual(document["report"], str(out / "report.html"))
+            self.assertGreater((out / "report.html").stat().st_size, 100000)
+            self.assertTrue((out / ".opponens-demo").exists())
+            stale = out / "store" / "stale.txt"
+            stale.write_text("of the demo before")
+            program = start("demo", "--out", out)
+            for _ in range(600):
+                if not stale.exists() and snapshot(out / "store"):
+                    break
+                time.sleep(0.1)
+            program.send_signal(signal.SIGINT)
+            program.communicate(timeout=120)
+            self.assertEqual(program.returncode, 130)
+            self.assertFalse(stale.exists())
 
 
 if __name__ == "__main__":

@@ -42,6 +42,12 @@ def run(*arguments, cwd=None, env=None):
     return done.returncode, done.stdout, done.stderr
 
 
+def start(*arguments, cwd=None):
+    """The running program."""
+    return subprocess.Popen([PROGRAM, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                            cwd=cwd or SOURCE)
+
+
 def must(*arguments, code=0, **options):
     """The JSON document of a command that has to end with the given exit code."""
     got, out, err = run(*arguments, "--json", **options)

@@ -23,6 +23,7 @@
 namespace opponens::motion {
 namespace {
 
+constexpr double kResolution = 0.02;  // rad
 const std::filesystem::path kModels = std::filesystem::path(OPPONENS_SOURCE_DIR) / "models";
 
 class RobotWorld : public ::testing::Test {
@@ -127,8 +128,66 @@ TEST_F(RobotWorld, ReachSaysWhyNot) {
   EXPECT_EQ(reason.rfind("pre-grasp in collision: ", 0), 0U) << reason;
   Grasp through = *grasp;  // from a free pre-grasp into the bottle
   through.X_OH.translation() = Eigen::Vector3d(0, 0, 0.1);
-  const std::string closing = reach(through, robot, kinematics, X_RO(), checker, checker, 0.02);
-  EXPECT_TRUE(closing.rfind("closing segment in collision: ", 0) == 0 || closing == "no inverse kinematics") << closing;
+  // Towards the bottle's axis as far as it takes, with nothing but the bottle in the world.
+  robot::Scene alone = scene;
+  alone.bodies = {scene.body("bottle")};
+  const robot::CollisionChecker all(robot, alone);
+  const auto why = [&](const robot::CollisionChecker& closing, const ContactLimit& limit) {
+    return reach(through, robot, kinematics, X_RO(), all, closing, 0.02, limit);
+  };
+  std::string closing;
+  for (double share = 0.5; share <= 1.0 && closing.empty(); share += 0.05) {
+    through.X_OH.translation() = (1.0 - share) * grasp->X_OH.translation() + share * Eigen::Vector3d(0, 0, 0.1);
+    closing = why(all, {});
+  }
+  EXPECT_EQ(closing.rfind("closing segment in collision: ", 0), 0U) << closing;
+  EXPECT_NE(closing.find("-bottle"), std::string::npos) << closing;
+  EXPECT_TRUE(through.arm_solutions.empty());
+
+  // The hand may touch: then a link without a contact is in the way, and with contacts all over the depth is.
+  std::vector<robot::BodyPair> pairs;
+  std::vector<std::string> hand;
+  const robot::RobotDescription below_palm = robot::hand_of(robot.description());
+  for (const robot::Link& link : below_palm.links) {
+    hand.push_back(link.name);
+    pairs.emplace_back(link.name, "bottle");
+  }
+  const robot::CollisionChecker touching(robot, alone, pairs);
+  const ContactDepth depth(robot, alone, "bottle", hand);
+  const std::string no_contact = why(touching, {&depth});
+  EXPECT_EQ(no_contact.rfind("closing segment in collision: ", 0), 0U) << no_contact;
+  for (const std::string& link : hand) through.contacts.push_back({link, {}, {}, 0.5});
+  EXPECT_EQ(why(touching, {&depth}), "closing segment too deep in the object");
+  EXPECT_EQ(why(touching, {&depth, 1.0}), "");  // a bound of 1 m
+}
+
+TEST_F(RobotWorld, ClosingWorldBoundsTheContactsOfTheGraspAlone) {
+  // A small ball before a fingertip that it meets `deep` m deep; everything else is far away.
+  const auto& tip = robot.description().tips.front();
+  const robot::Link& link = robot.links()[static_cast<std::size_t>(tip.link)];
+  const Eigen::VectorXd q = start();
+  const Eigen::Isometry3d X_WL = scene.X_WR * robot.link_poses(q)[static_cast<std::size_t>(tip.link)];
+  const auto valid = [&](double deep, const std::vector<std::string>& contact_links, bool bounded) -> bool {
+    robot::Scene ball = scene;
+    const Eigen::Vector3d center = X_WL * tip.p_L + (0.01 - deep) * (X_WL.linear() * tip.n_L);
+    ball.bodies = {{"ball", Eigen::Isometry3d(Eigen::Translation3d(center)), {{robot::Sphere{0.01}, {}}}}};
+    ball.bodies[0].geometry[0].X_BG.setIdentity();
+    const robot::CollisionChecker all(robot, ball);
+    const robot::CollisionChecker closing(robot, ball, {{link.name, "ball"}});
+    const ContactDepth depth(robot, ball, "ball", {link.name}, 0.0005);
+    std::vector<Contact> contacts;
+    for (const std::string& name : contact_links) contacts.push_back({name, {}, {}, 0.5});
+    std::int64_t checks = 0;
+    EXPECT_EQ(all.free(q), deep < 0.0);
+    const ContactLimit limit{bounded ? &depth : nullptr, 0.001};
+    return closing_world(all, closing, robot, contacts, kResolution, limit).free(q.transpose(), checks).front();
+  };
+  EXPECT_TRUE(valid(-0.001, {}, true)) << "touches nothing";
+  EXPECT_TRUE(valid(0.0005, {link.name}, true)) << "a contact, shallow";
+  EXPECT_FALSE(valid(0.002, {link.name}, true)) << "a contact, too deep";
+  EXPECT_TRUE(valid(0.002, {link.name}, false)) << "no bound asked for";
+  EXPECT_FALSE(valid(0.0005, {}, true)) << "the link has no contact";
+  EXPECT_FALSE(valid(0.0005, {"palm"}, true)) << "another link has";
 }
 
 TEST_F(RobotWorld, ContactDepthOfAFingertipInTheBottle) {
@@ -191,7 +250,7 @@ TEST_P(RobotPlan, ReachesTheShelf) {
   }
   PlannerSettings settings;
   settings.variant = GetParam();
-  const World world = make_world(checker, robot, settings.resolution);
+  const World world = make_world(checker, robot, kResolution);
   const auto run = [&](std::uint64_t seed) {
     return plan(start(), wide_box(0.4), goals, robot.joint_names(), robot.hand(), robot.lower(), robot.upper(),
                 robot.weights(), world, settings, seed);
@@ -204,7 +263,7 @@ TEST_P(RobotPlan, ReachesTheShelf) {
   const auto goal = static_cast<std::size_t>(result.goal);
   const auto whole =
       append_closing_segment(shorter.path, join(robot, grasp->arm_solutions[goal].q_grasp, grasp->q_grasp),
-                             robot.hand(), closing_world(checker, robot, settings.resolution));
+                             robot.hand(), closing_world(checker, checker, robot, {}, kResolution));
   ASSERT_TRUE(whole);
   std::int64_t checks = 0;
   for (Eigen::Index i = 1; i < whole->waypoints.rows(); ++i) {

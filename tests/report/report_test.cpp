@@ -97,7 +97,7 @@ TEST(Report, EqualInputGivesEqualBytes) { EXPECT_EQ(render_report(full()), rende
 
 TEST(Report, RunsDifferOnlyBetweenTheRunLogComments) {
   ReportInput later = small();
-  later.run = RunPart{"2027-02-03 on another host", 99.5};
+  later.run = RunPart{"2027-02-03 on another host", {{"synergy", 99.5}}};
   const std::string a = render_report(small());
   const std::string b = render_report(later);
   EXPECT_NE(a, b);
@@ -105,6 +105,34 @@ TEST(Report, RunsDifferOnlyBetweenTheRunLogComments) {
   EXPECT_EQ(a.find(kRunLogBegin), a.rfind(kRunLogBegin));
   later.run.reset();
   expect_sound(render_report(later));
+}
+
+TEST(Report, SuccessIsTheShareOfAllRunsAndEachLengthIsNamed) {
+  ReportInput input = small();
+  PlanRun solved;
+  solved.planner = "synergy";
+  solved.settings = "step 0.4 rad";
+  solved.result.status = PlanStatus::solved;
+  solved.result.length = 2.125;
+  solved.result.length_l1 = 5.96;
+  solved.shortened_length = 1.92;
+  PlanRun failed = solved;
+  failed.result = {};
+  failed.result.status = PlanStatus::check_limit;
+  failed.shortened_length.reset();
+  input.path = PathPart{};
+  input.path->runs = {solved, failed, failed, failed};
+  input.run = RunPart{"log", {{"synergy", 0.25}}};
+  const std::string page = render_report(input);
+  const std::size_t row = page.find("here, synergy (4 runs, step 0.4 rad)");
+  ASSERT_NE(row, std::string::npos);
+  EXPECT_NE(page.substr(row, 200).find("25 %"), std::string::npos) << page.substr(row, 200);
+  for (const char* words : {"as planned 2.12 rad in the joint metric, 5.96 rad as the sum of weighted joint movements; "
+                            "shortened 1.92 rad in the joint metric",
+                            "synergy: 0.250 s of CPU per run", "check limit"}) {
+    EXPECT_NE(page.find(words), std::string::npos) << words;
+  }
+  expect_sound(page);
 }
 
 TEST(Report, BannerStandsExactlyWhenSomethingIsSimulated) {
@@ -242,7 +270,7 @@ TEST(Report, AFailedRunAndAFailedVerdictAreSeen) {
   EXPECT_TRUE(contains(page, "iteration limit"));
   EXPECT_TRUE(contains(page, "stopped after 100000 iterations"));
   EXPECT_TRUE(contains(page, "none found by synergy"));
-  EXPECT_TRUE(contains(page, "1 of 187 objects failed"));
+  EXPECT_TRUE(contains(page, " grasps and paths failed; 187 hashes agree"));
   EXPECT_TRUE(contains(page, "slips"));
 }
 

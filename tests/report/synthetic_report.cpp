@@ -317,8 +317,8 @@ ReportInput synthetic_report() {
   for (const auto& item : input.grasps->items) input.verification->verdicts.push_back({item.id, "grasp", true, ""});
   input.verification->verdicts.push_back({input.path->id, "path", true, ""});
   input.provenance = provenance(*input.grasps, *input.path, rng);
-  input.run =
-      RunPart{"2026-01-01T10:00:00Z host example\nsimulate 0.8 s\nanalyze 2.1 s\ngrasp 14.2 s\nplan 3.3 s", 3.3};
+  input.run = RunPart{"2026-01-01T10:00:00Z host example\nsimulate 0.8 s\nanalyze 2.1 s\ngrasp 14.2 s\nplan 3.3 s",
+                      {{"synergy", 3.3}}};
   return input;
 }
 

@@ -11,6 +11,7 @@
 
 #include "core/grasp.hpp"
 #include "core/synergies.hpp"
+#include "grasp/quality.hpp"
 #include "robot/mesh.hpp"
 #include "robot/robot_model.hpp"
 #include "robot/scene.hpp"
@@ -102,8 +103,9 @@ inline Grasp cube_grasp() {
     grasp.contacts.push_back(
         {"tip" + std::to_string(i), -0.02 * axes[i] + Eigen::Vector3d(0, 0, i < 2 ? 0.008 : -0.008), axes[i], 0.5});
   }
-  grasp.quality.state = ClosureState::force_closure;
-  grasp.quality.convention.rho = 0.035;
+  QualityConvention convention;
+  convention.rho = 0.035;
+  grasp.quality = grasp::evaluate(grasp.contacts, convention);  // the other side's solvers
   return grasp;
 }
 

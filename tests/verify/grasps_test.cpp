@@ -99,12 +99,73 @@ TEST_F(CheckGrasp, NotPositivelySpanning) {
   EXPECT_TRUE(fault_is("not stored as force closure, but its wrenches positively span"));
 }
 
+TEST_F(CheckGrasp, StoredQualityMustBeTheContacts) {
+  const GraspQuality right = grasp.quality;
+  for (const double factor : {0.9, 1.01, 1.5}) {
+    grasp.quality.epsilon = factor * *right.epsilon;
+    EXPECT_TRUE(fault_is("the stored epsilon"));
+  }
+  grasp.quality.epsilon.reset();
+  EXPECT_TRUE(fault_is("with epsilon = 0"));
+  grasp.quality = right;
+  grasp.quality.direction.setZero();  // found without the stored direction too
+  EXPECT_EQ(fault(), "");
+  grasp.quality = right;
+  grasp.quality.min_weight = 1.01 * *right.min_weight;
+  EXPECT_TRUE(fault_is("the stored l*"));
+  grasp.quality.min_weight = 0.9 * *right.min_weight;
+  EXPECT_TRUE(fault_is("is too small"));
+  grasp.quality.min_weight = 0.0;
+  EXPECT_TRUE(fault_is("l* = 0"));
+  grasp.quality = right;
+  grasp.quality.convention.edges = 2;
+  EXPECT_TRUE(fault_is("2 cone edges are fewer than 3"));
+}
+
+TEST_F(CheckGrasp, QualityByForceUnitAndMaximumNorm) {
+  for (const ForceUnit unit : {ForceUnit::normal, ForceUnit::force}) {
+    for (const WrenchNorm norm : {WrenchNorm::l1, WrenchNorm::linf}) {
+      QualityConvention convention = grasp.quality.convention;
+      convention.unit = unit;
+      convention.norm = norm;
+      grasp.quality = grasp::evaluate(grasp.contacts, convention);
+      EXPECT_EQ(fault(), "") << static_cast<int>(unit) << static_cast<int>(norm);
+      grasp.quality.epsilon = 1.02 * *grasp.quality.epsilon;
+      EXPECT_TRUE(fault_is("the stored epsilon"));
+    }
+  }
+}
+
+TEST(CheckArmSolutions, MustPutThePalmAtTheGrasp) {
+  const robot::RobotModel robot = gantry();
+  const Eigen::Isometry3d X_RO(Eigen::Translation3d(0.3, 0.1, 0.0));
+  Grasp grasp;
+  grasp.q_grasp = grasp.q_pregrasp = Eigen::VectorXd::Zero(1);
+  grasp.X_OH = Eigen::Translation3d(0.1, 0.0, 0.0);
+  grasp.X_OH_pregrasp = Eigen::Translation3d(-0.1, 0.0, 0.0);
+  grasp.arm_solutions = {{Eigen::Vector2d(0.2, 0.1), Eigen::Vector2d(0.4, 0.1)}};
+  const auto fault = [&] {
+    Verdict verdict;
+    check_arm_solutions(grasp, robot, X_RO, 1e-6, verdict);
+    return verdict.ok ? "" : verdict.reasons.front();
+  };
+  EXPECT_EQ(fault(), "");
+  grasp.arm_solutions[0].q_grasp[0] += 2e-6;
+  EXPECT_NE(fault().find("arm solution 0, grasp, puts the palm 0.002 mm and 0 rad off"), std::string::npos) << fault();
+  grasp.arm_solutions[0].q_grasp[0] -= 2e-6;
+  grasp.X_OH_pregrasp.linear() = Eigen::AngleAxisd(2e-6, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  EXPECT_NE(fault().find("pre-grasp, puts the palm"), std::string::npos) << fault();
+  grasp.X_OH_pregrasp.linear().setIdentity();
+  grasp.arm_solutions.push_back({Eigen::Vector3d(0.2, 0.1, 0.0), Eigen::Vector2d(0.4, 0.1)});
+  EXPECT_NE(fault().find("arm solution 1, pre-grasp, has another number"), std::string::npos) << fault();
+}
+
 TEST(PositiveSpan, KnownCases) {
   const QualityConvention convention = cube_grasp().quality.convention;
   const std::vector<Contact> four = cube_grasp().contacts;
   const PositiveSpan all = positive_span(four, convention);
   EXPECT_TRUE(all.spans);
-  EXPECT_EQ(all.wrenches, 64);
+  EXPECT_EQ(all.wrenches, 32);
   EXPECT_LT(all.residual, 1e-12);
 
   std::vector<Contact> frictionless = four;

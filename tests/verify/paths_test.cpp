@@ -80,6 +80,39 @@ TEST_F(CheckPath, LimitsEndsAndForm) {
   EXPECT_TRUE(fault_is("finite"));
 }
 
+TEST_F(CheckPath, ThePalmMustBeWhereTheGraspSays) {
+  // Start, pre-grasp and grasp agree with the joint values that the claim names; only the poses tell.
+  claim.grasp = claim.goal;
+  claim.closing_from = 2;
+  claim.X_WH_pregrasp = Eigen::Isometry3d(Eigen::Translation3d(0.5, 0.0, 0.0));
+  claim.X_WH_grasp = claim.X_WH_pregrasp;
+  EXPECT_TRUE(check().ok);
+  claim.X_WH_pregrasp->translation().y() = 2e-6;
+  EXPECT_TRUE(fault_is("the path's pre-grasp puts the palm 0.002 mm and 0 rad off the grasp's pose"));
+  claim.X_WH_pregrasp->translation().y() = 0.0;
+  claim.X_WH_grasp->linear() = Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitX()).toRotationMatrix();
+  EXPECT_TRUE(fault_is("the path's end puts the palm 0 mm and 0.1 rad off the grasp's pose"));
+  // The robot stands somewhere else: so does the palm.
+  claim.X_WH_grasp->linear().setIdentity();
+  scene.X_WR.translation().z() = 0.01;
+  EXPECT_TRUE(fault_is("the path's end puts the palm 10 mm"));
+}
+
+TEST_F(CheckPath, LooksBetweenTheFractionsOfAPlannersOwnCheck) {
+  // A film so thin that the palm hits it only within 0.0003 of the middle between two samples of 0.002: the ends of the
+  // equal parts are free, their middles are not.
+  path.waypoints.resize(2, 3);
+  path.waypoints << 0.0, 0.0, 0, 0.2, 0.0, 0;
+  claim.start = path.waypoints.row(0).transpose();
+  claim.goal = path.waypoints.row(1).transpose();
+  const double height = std::sqrt(0.05 * 0.05 - 0.0003 * 0.0003);  // of the film's edge above the ball's way
+  scene.bodies = {body("film", robot::Box{Eigen::Vector3d(1e-6, 0.2, 0.01)}, {0.101, 0.1 + height, 0})};
+  EXPECT_TRUE(fault_is("collision of palm and film between waypoints 0 and 1 at 0.505"));
+  const Verdict verdict = check();
+  EXPECT_EQ(verdict.worst_pair.first, "palm");
+  EXPECT_EQ(verdict.worst_pair.second, "film");
+}
+
 TEST_F(CheckPath, BallWhollyInsideAMeshIsACollision) {
   const auto mesh =
       std::make_shared<const robot::TriangleMesh>(robot::triangulate(robot::Box{Eigen::Vector3d(3, 3, 3)}));
@@ -137,7 +170,8 @@ TEST(CollisionBodies, AgreesWithTheChecker) {
     if (sorted.empty()) {
       ++free;
       // The widest link's radius is 75 mm; two such polyhedra are 0.18 mm too thin.
-      ASSERT_NEAR(bodies.clearance({}, 10.0), checker.clearance(q).distance, 1.8e-4) << "q = " << q.transpose();
+      ASSERT_NEAR(bodies.clearance({}, 10.0).distance, checker.clearance(q).distance, 1.8e-4)
+          << "q = " << q.transpose();
     }
   }
   EXPECT_GT(free, 50);

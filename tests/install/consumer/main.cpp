@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The opponens authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Uses one function of each room from the installed package: a box, a grasp's quality, a path.
+// Uses one function each of analysis, grasp, motion and storage from the installed package.
 #include <cmath>
 #include <cstdio>
 
