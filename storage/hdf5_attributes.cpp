@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The opponens authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include <hdf5.h>
+
 #include <algorithm>
 
 #include "storage/hdf5_calls.hpp"

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "storage/hdf5_wrappers.hpp"
 
+#include <hdf5.h>
+
 #include <algorithm>
 #include <type_traits>
 #include <utility>
@@ -13,6 +15,7 @@ namespace opponens::storage::hdf5 {
 namespace {
 
 static_assert(std::is_same_v<hid_t, std::int64_t> && std::is_same_v<herr_t, int>);
+static_assert(std::is_same_v<hsize_t, unsigned long long>);
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 

@@ -237,9 +237,7 @@ TEST(MeshDistance, OneTriangleIsEnough) {
   EXPECT_NEAR(distance.signed_distance({1, 1, 1}), 2.0 / std::sqrt(3.0), 1e-15);
 }
 
-using Eigen::Isometry3d;
-using Eigen::Vector3d;
-namespace fs = std::filesystem;
+using Eigen::Isometry3d, Eigen::Vector3d;
 
 /// The least signed distance of the vertices of one mesh from another.
 double nearest_vertex(const TriangleMesh& from, const Isometry3d& X, const MeshDistance& to) {
@@ -249,12 +247,10 @@ double nearest_vertex(const TriangleMesh& from, const Isometry3d& X, const MeshD
 }
 
 double longest_edge(const TriangleMesh& mesh) {
+  const auto corners = [&](int k) -> Eigen::Matrix3Xd { return mesh.vertices(Eigen::all, mesh.triangles.row(k)); };
   double longest = 0.0;
-  for (const auto& triangle : mesh.triangles.colwise()) {
-    for (int k = 0; k < 3; ++k) {
-      const Vector3d edge = mesh.vertices.col(triangle[k]) - mesh.vertices.col(triangle[(k + 1) % 3]);
-      longest = std::max(longest, edge.norm());
-    }
+  for (int k = 0; k < 3; ++k) {
+    longest = std::max(longest, (corners(k) - corners((k + 1) % 3)).colwise().norm().maxCoeff());
   }
   return longest;
 }
@@ -263,9 +259,10 @@ double longest_edge(const TriangleMesh& mesh) {
 /// bounds the separation from above; less the longest edge from below, since no surface point is further from a vertex.
 /// A part moved by less than its separation stays free.
 TEST(MeshDistance, BoundsTheSeparationOfLaboratoryMeshes) {
-  const fs::path meshes = fs::path(OPPONENS_SHARED_DATA) / "data/robots/paper_lab_ur5_allegro/meshes";
-  const fs::path object = fs::path(OPPONENS_SHARED_DATA) / "data/objects/ycb/006_mustard_bottle/006_mustard_bottle.obj";
-  if (!fs::exists(meshes) || !fs::exists(object)) GTEST_SKIP() << meshes << " or " << object << " is absent";
+  const std::filesystem::path data = OPPONENS_SHARED_DATA "/data";
+  const auto meshes = data / "robots/paper_lab_ur5_allegro/meshes";
+  const auto object = data / "objects/ycb/006_mustard_bottle/006_mustard_bottle.obj";
+  if (!exists(meshes) || !exists(object)) GTEST_SKIP() << meshes << " or " << object << " is absent";
   const auto scale = Vector3d::Constant(0.001);
   const auto bottle_mesh = load_mesh(object);
   const CollisionShape bottle(bottle_mesh);
