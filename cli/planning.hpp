@@ -55,6 +55,7 @@ class Planning {
   const Query& query() const { return query_; }
   std::size_t goals_left_out() const { return goals_left_out_; }
   const robot::CollisionChecker& checker() const { return checker_; }
+  bool keeps_margin() const { return margin_ > 0.0; }
   Run run(std::uint64_t seed) const;
 
  private:
@@ -67,8 +68,10 @@ class Planning {
   const NamedWorld& world_;
   Query query_;
   std::optional<analysis::LikenessReference> free_motion_;
+  double margin_;  ///< m, that the scene's bodies are grown by
   robot::CollisionChecker checker_;
-  robot::CollisionChecker closing_;  ///< leaves hand-object pairs out
+  robot::CollisionChecker closing_free_;  ///< of the closing segment: the object as it is
+  robot::CollisionChecker closing_;       ///< the same, hand-object pairs left out
   motion::ContactDepth depth_;
   motion::World space_;
   motion::PlannerSettings settings_;

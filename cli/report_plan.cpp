@@ -35,7 +35,11 @@ PlanStatus status_from(const std::string& name) {
 
 /// "step 0.4 rad, resolution 0.02 rad": what decides whether two rows may be compared.
 std::string settings_words(const Json& parameters) {
-  return "step " + parameters.at("step").dump() + " rad, resolution " + parameters.at("resolution").dump() + " rad";
+  std::string words =
+      "step " + parameters.at("step").dump() + " rad, resolution " + parameters.at("resolution").dump() + " rad";
+  if (parameters.at("max_checks") > 0) words += ", limit " + parameters.at("max_checks").dump() + " checks";
+  if (parameters.at("time_limit") > 0.0) words += ", limit " + parameters.at("time_limit").dump() + " s";
+  return words;
 }
 
 PlanRun run_from(const Json& json, const Json& parameters) {

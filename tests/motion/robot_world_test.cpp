@@ -12,6 +12,7 @@
 #include "motion/closing_segment.hpp"
 #include "motion/edge_check.hpp"
 #include "motion/goal_configurations.hpp"
+#include "motion/grown_scene.hpp"
 #include "motion/joint_metric.hpp"
 #include "motion/shortcut.hpp"
 #include "motion/syn_planner.hpp"
@@ -144,19 +145,18 @@ TEST_F(RobotWorld, ReachSaysWhyNot) {
   EXPECT_NE(closing.find("-bottle"), std::string::npos) << closing;
   EXPECT_TRUE(through.arm_solutions.empty());
 
-  // The hand may touch: then a link without a contact is in the way, and with contacts all over the depth is.
+  // Every link may touch: then a link without a contact is in the way, and with contacts all over the depth is.
   std::vector<robot::BodyPair> pairs;
-  std::vector<std::string> hand;
-  const robot::RobotDescription below_palm = robot::hand_of(robot.description());
-  for (const robot::Link& link : below_palm.links) {
-    hand.push_back(link.name);
+  std::vector<std::string> links;
+  for (const robot::Link& link : robot.links()) {
+    links.push_back(link.name);
     pairs.emplace_back(link.name, "bottle");
   }
   const robot::CollisionChecker touching(robot, alone, pairs);
-  const ContactDepth depth(robot, alone, "bottle", hand);
+  const ContactDepth depth(robot, alone, "bottle", links);
   const std::string no_contact = why(touching, {&depth});
   EXPECT_EQ(no_contact.rfind("closing segment in collision: ", 0), 0U) << no_contact;
-  for (const std::string& link : hand) through.contacts.push_back({link, {}, {}, 0.5});
+  for (const std::string& link : links) through.contacts.push_back({link, {}, {}, 0.5});
   EXPECT_EQ(why(touching, {&depth}), "closing segment too deep in the object");
   EXPECT_EQ(why(touching, {&depth, 1.0}), "");  // a bound of 1 m
 }
@@ -236,6 +236,29 @@ TEST_F(RobotWorld, ContactDepthIsThatOfTheDeepestSurfacePoint) {
     deep += expected > 0.001 ? 1 : 0;
   }
   EXPECT_GT(deep, 5);
+}
+
+TEST(GrownScene, KeepsTheMarginFromEveryShapeButTheException) {
+  robot::Scene scene;
+  const auto mesh = std::make_shared<const robot::TriangleMesh>(robot::triangulate(robot::Sphere{0.04}, 64));
+  const std::vector<robot::Shape> shapes = {robot::Box{Eigen::Vector3d(0.1, 0.2, 0.3)}, robot::Sphere{0.04},
+                                            robot::Cylinder{0.03, 0.2}, mesh};
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    robot::SceneBody body;
+    body.name = std::to_string(i);
+    body.geometry.push_back({shapes[i], Eigen::Isometry3d::Identity()});
+    scene.bodies.push_back(body);
+  }
+  const robot::Scene grown = grown_scene(scene, 0.001, "2");
+  EXPECT_TRUE(
+      std::get<robot::Box>(grown.bodies[0].geometry[0].shape).size.isApprox(Eigen::Vector3d(0.102, 0.202, 0.302)));
+  EXPECT_DOUBLE_EQ(std::get<robot::Sphere>(grown.bodies[1].geometry[0].shape).radius, 0.041);
+  EXPECT_EQ(std::get<robot::Cylinder>(grown.bodies[2].geometry[0].shape).radius, 0.03) << "excepted";
+  const robot::Scene all = grown_scene(scene, 0.001);
+  EXPECT_DOUBLE_EQ(std::get<robot::Cylinder>(all.bodies[2].geometry[0].shape).length, 0.202);
+  const auto& ball = *std::get<std::shared_ptr<const robot::TriangleMesh>>(grown.bodies[3].geometry[0].shape);
+  EXPECT_NEAR(ball.vertices.colwise().norm().minCoeff(), 0.041, 1e-5);
+  EXPECT_NEAR(mesh->vertices.colwise().norm().maxCoeff(), 0.04, 1e-12) << "the original is left alone";
 }
 
 class RobotPlan : public RobotWorld, public ::testing::WithParamInterface<Variant> {};
