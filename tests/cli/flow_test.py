@@ -15,11 +15,9 @@ from html.parser import HTMLParser
 
 import h5py
 
-from support import HEADER, SOURCE, data_set, must, rows, run, snapshot, start, without_run_log
+from support import HEADER, SOURCE, data_set, forge, must, rows, run, snapshot, start, without_run_log
 
 SCENE = "models/scenes/cylinder_shelf.yaml"
-PROFILE = "[[0.03, 0], [0.03, 0.06], [0.03, 0.12], [0.03, 0.18]]"
-THICKER = "[[0.036, 0], [0.036, 0.06], [0.036, 0.12], [0.036, 0.18]]"  # the fingertips would close 6 mm into it
 
 
 def flow(folder, threads, seed=3):
@@ -178,20 +176,34 @@ class Pipeline(unittest.TestCase):
             self.assertNotIn("interrupted", {one["status"] for one in runs})
 
     def test_goals_that_the_hand_cannot_close_from_are_left_out(self):
+        def close_further(fields):
+            fields["q_grasp"][...] += 0.5 * (fields["q_grasp"][...] - fields["q_pregrasp"][...])
+
         with tempfile.TemporaryDirectory() as folder:
             store = self.copied(folder)
-            scene = pathlib.Path(folder) / SCENE
-            scene.parent.mkdir(parents=True)
-            text = (SOURCE / SCENE).read_text()
-            self.assertIn(PROFILE, text)
-            scene.write_text(text.replace(PROFILE, THICKER, 1))
-            code, out, err = run("plan", "--store", store, "--scene", SCENE, "--json", cwd=folder)
+            forge(store, "grasp", close_further)
+            code, out, err = run("plan", "--store", store, "--scene", SCENE, "--json")
             self.assertEqual(code, 1, err)
             document = json.loads(out)
             self.assertEqual(document["runs"][0]["status"], "no_goals")
             self.assertIn("none has a valid closing segment", document["runs"][0]["detail"])
             self.assertIn("goals left out", document["warnings"][-1])
             self.assertIn("goals left out", err)
+
+    def test_a_grasp_that_the_arm_does_not_reach_fails(self):
+        def turn_the_arm(fields):
+            fields["arm.q_grasp"][:, 0] += 0.01
+
+        with tempfile.TemporaryDirectory() as folder:
+            store = self.copied(folder)
+            forge(store, "grasp", turn_the_arm)
+            for file in store.glob("*.h5"):  # paths and verdicts speak of the grasps as they were
+                with h5py.File(file) as batch:
+                    kinds = {item.attrs["kind"] for item in batch["objects"].values()}
+                if kinds & {"path", "verification"}:
+                    file.unlink()
+            failed = must("verify", "--store", store, code=1)["failed"]
+            self.assertGreater(len(failed), 0)
 
     def test_an_open_mesh_is_told(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -201,11 +213,13 @@ class Pipeline(unittest.TestCase):
             (scene.parent / "sheet.obj").write_text("v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nf 1 2 3\n")
             scene.write_text((SOURCE / SCENE).read_text() + "  - name: sheet\n    pose: {xyz: [2, 2, 2]}\n    geometry:\n"
                              "      - mesh: {file: sheet.obj, unit: m}\n")
-            code, out, err = run("plan", "--store", store, "--scene", SCENE, "--json", cwd=folder)
-            self.assertEqual(code, 0, err)
-            self.assertTrue(any("sheet: its mesh is open" in one for one in json.loads(out)["warnings"]))
-            self.assertIn("note: sheet: its mesh is open", err)
-            code, out, err = run("plan", "--store", store, "--scene", SCENE, "--json", "--quiet", cwd=folder)
+            for command, *options in (("grasp", "--group", 4, "--count", 1, "--min-trials", 64), ("plan",)):
+                arguments = (command, "--store", store, "--scene", scene, *options, "--json")
+                code, out, err = run(*arguments)
+                self.assertEqual(code, 0, err)
+                self.assertTrue(any("sheet: its mesh is open" in one for one in json.loads(out)["warnings"]))
+                self.assertIn("note: sheet: its mesh is open", err)
+            code, out, err = run(*arguments, "--quiet")
             self.assertEqual(code, 0, err)
             self.assertEqual(err, "")
 
@@ -287,7 +301,7 @@ class Pipeline(unittest.TestCase):
             must("report", "--store", store, "--out", page)
             self.assertIn("path length</th><td>not available", page.read_text())  # those there are of other synergies
             must("analyze", "--store", store, "--seed", 3)
-            must("plan", "--store", store, "--scene", SCENE, "--seed", 4)
+            must("plan", "--store", store, "--scene", SCENE, "--seed", 3, "--runs", 2)
             must("report", "--store", store, "--out", page)
             self.assertEqual(without_run_log(page.read_text()), without_run_log(before))
             # Another hand in between, with other limits, outside the data folder.

@@ -7,6 +7,12 @@ import os
 import pathlib
 import re
 import subprocess
+import sys
+
+import h5py
+
+sys.path.append(str(pathlib.Path(__file__).parent.parent / "storage"))
+from read_with_h5py import content_hash, read_object  # noqa: E402
 
 PROGRAM = os.environ["OPPONENS_PROGRAM"]
 SOURCE = pathlib.Path(os.environ["OPPONENS_SOURCE_DIR"])
@@ -61,6 +67,19 @@ def snapshot(store):
     if not store.exists():
         return None
     return {file.name: hashlib.sha256(file.read_bytes()).hexdigest() for file in sorted(store.glob("*.h5"))}
+
+
+def forge(store, kind, change):
+    """Changes the fields of every object of a kind, and the hashes so that they fit: what a damaged file cannot be."""
+    for path in sorted(store.glob("*.h5")):
+        with h5py.File(path, "r+") as file:
+            groups = [group for group in file["objects"].values() if group.attrs["kind"] == kind]
+            for group in groups:
+                change(group["fields"])
+                group.attrs["id"] = content_hash(read_object(group))
+        if groups:
+            path.rename(path.with_name(f"{path.stem.split('-')[0]}-{hashlib.sha256(path.read_bytes()).hexdigest()[:32]}.h5"))
+    (store / "index.json").unlink()
 
 
 def without_run_log(page):

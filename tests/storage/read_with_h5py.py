@@ -87,4 +87,5 @@ def main():
     print(first["provenance"]["command"], first["provenance"]["files"][0], first["provenance"]["seed"])
 
 
-main()
+if __name__ == "__main__":
+    main()
