@@ -1,3 +1,5 @@
+# SPDX-FileCopyrightText: 2026 The opponens authors
+# SPDX-License-Identifier: BSD-3-Clause
 # Installs BUILD into WORK/prefix, then configures, builds and runs CONSUMER against it.
 function(run)
   execute_process(COMMAND ${ARGV} RESULT_VARIABLE code)
