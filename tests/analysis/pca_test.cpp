@@ -63,7 +63,7 @@ TEST(PrincipalAxes, AgreesWithTheSvdOfTheSamples) {
   const Eigen::MatrixXd q = test::normal_matrix(300, 16, rng) * test::normal_matrix(16, 16, rng);
   const SynergyBasis basis = principal_axes(moments(q));
   const Eigen::MatrixXd centred = q.rowwise() - q.colwise().mean();
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(centred, Eigen::ComputeThinV);
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(centred, Eigen::ComputeThinV);
   EXPECT_TRUE(basis.variance.isApprox(svd.singularValues().cwiseAbs2() / 300.0, 1e-11));
   EXPECT_TRUE((basis.axes.transpose() * svd.matrixV()).cwiseAbs().isIdentity(1e-9));
 }

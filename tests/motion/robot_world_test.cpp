@@ -153,7 +153,7 @@ TEST_F(RobotWorld, ReachSaysWhyNot) {
     pairs.emplace_back(link.name, "bottle");
   }
   const robot::CollisionChecker touching(robot, alone, pairs);
-  const ContactDepth depth(robot, alone, "bottle", links);
+  const ContactDepth depth(robot, alone, "bottle", links, 0.01);
   const std::string no_contact = why(touching, {&depth});
   EXPECT_EQ(no_contact.rfind("closing segment in collision: ", 0), 0U) << no_contact;
   for (const std::string& link : links) through.contacts.push_back({link, {}, {}, 0.5});
