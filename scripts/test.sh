@@ -27,6 +27,7 @@ if [ "$part" != sanitize ]; then
 fi
 if [ "$part" != release ]; then
   # The install test, the long flows, whole grasp searches and simulations of statistics belong to the release build.
+  # UBSan without null and object-size, which ASan sees, and alignment: they double the time to compile Eigen.
   # No -Werror here: GCC 12's sanitizers raise false alarms of uninitialised use in the standard library.
   configure_and_build sanitize -DOPPONENS_WERROR=OFF -DOPPONENS_TESTS=ON -DOPPONENS_EXAMPLES=OFF
   export LSAN_OPTIONS="suppressions=$ROOT/tests/support/lsan.supp:print_suppressions=0"
