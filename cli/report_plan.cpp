@@ -116,7 +116,12 @@ report::RunPart run_part(const storage::Store& store) {
   std::istringstream lines(part.log);
   for (std::string line; std::getline(lines, line);) {
     const Json run = Json::parse(line, nullptr, false);
-    if (!run.is_object() || !run.contains("planner_cpu_seconds")) continue;
+    if (!run.is_object()) continue;
+    if (run.contains("command")) {
+      part.commands.push_back({run["command"], run.value("date", ""), run.value("wall_seconds", 0.0),
+                               run.value("cpu_seconds", 0.0), run.value("threads", 1), run.value("host", "")});
+    }
+    if (!run.contains("planner_cpu_seconds")) continue;
     const auto seconds = run["planner_cpu_seconds"].get<std::vector<double>>();
     double sum = 0.0;
     for (const double one : seconds) sum += one;

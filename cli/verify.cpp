@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 #include <map>
+#include <set>
 
 #include "cli/commands.hpp"
 #include "cli/json.hpp"
@@ -36,8 +37,11 @@ class Worlds {
   std::map<std::string, NamedWorld> worlds_;
 };
 
-/// Robot, scene and meshes must be the ones that the object was made with.
-void check_files(const storage::Record& record, Verdict& verdict) {
+/// What the object was made from must be there, and robot, scene and meshes be the same as then.
+void check_origin(const storage::Record& record, const std::set<std::string>& stored, Verdict& verdict) {
+  for (const auto& id : record.provenance.inputs) {
+    if (!stored.contains(id)) verdict.fail("made from " + id + ", which is not in the store");
+  }
   for (const auto& [name, hash] : record.provenance.files) {
     try {
       if (file_sha256(find_file(name)) != hash) verdict.fail(name + " has changed since");
@@ -125,12 +129,14 @@ using Check = Verdict (*)(const storage::Store&, const storage::Record&, Worlds&
 void check_all(const storage::Store& store, const char* kind, Check check, Worlds& worlds, Progress& progress,
                Tally& tally) {
   const auto entries = store.list(kind);
+  std::set<std::string> stored;
+  for (const auto& entry : store.list()) stored.insert(entry.id);
   std::int64_t done = 0;
   for (const auto& entry : entries) {
     progress.update(done++, static_cast<std::int64_t>(entries.size()));
     const auto record = store.read(entry.id);
     Verdict verdict;
-    check_files(record, verdict);
+    check_origin(record, stored, verdict);
     if (verdict.ok) verdict = check(store, record, worlds);
     add(entry.id, entry.kind, verdict, tally);
   }
@@ -139,7 +145,7 @@ void check_all(const storage::Store& store, const char* kind, Check check, World
 std::vector<std::string> sentences() {
   return {
       "Every file's and every object's hash was computed again and compared.",
-      "The robot, scene and mesh files behind grasps and paths are the ones they were made with.",
+      "What grasps and paths were made from is in the store, and their robot, scene and mesh files are the same.",
       "Grasps: rigid poses, joint limits, slack against the synergy box, contacts on both surfaces, that their "
       "wrenches positively span all forces and torques, the stored quality (non-negative least squares and descent, "
       "no shared solver), and that each arm solution puts the palm where the grasp says.",

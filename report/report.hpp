@@ -167,9 +167,19 @@ struct ProvenanceItem {
 
 /// What differs from run to run. Stands between the comments run-log begin and run-log end, and nowhere else.
 struct RunPart {
+  /// One command as the log has it.
+  struct Command {
+    std::string name;
+    std::string date;  ///< UTC
+    double wall_seconds = 0.0;
+    double cpu_seconds = 0.0;
+    int threads = 1;
+    std::string host;
+  };
   std::string log;  ///< text, one line per run
   /// Planner -> mean s of CPU per run, shortcuts and loading not included: Table 2's second column.
   std::map<std::string, double> planning_seconds;
+  std::vector<Command> commands;  ///< in the order of the log
 };
 
 struct ReportInput {

@@ -145,7 +145,15 @@ Markup run_section(const ReportInput& input) {
       out += paragraph(concat({"Planning time (Table 2's second column), ", planner, ": ", fixed(seconds, 3),
                                " s of CPU per run in the mean, without loading and shortcuts."}));
     }
-    if (!input.run->log.empty()) out.html += concat({"<pre>", escape(input.run->log), "</pre>\n"});
+    Table table("Commands", {"command", "date (UTC)", "wall clock (s)", "CPU (s)", "threads", "host"});
+    for (const auto& one : input.run->commands) {
+      table.row({text(one.name), text(one.date), text(fixed(one.wall_seconds, 2)), text(fixed(one.cpu_seconds, 2)),
+                 text(std::to_string(one.threads)), text(one.host)});
+    }
+    if (!table.empty()) out += table.str();
+    if (!input.run->log.empty()) {
+      out += details("run log as it is stored", Markup{concat({"<pre>", escape(input.run->log), "</pre>\n"})});
+    }
   } else {
     out += note("No run log was given.");
   }

@@ -97,7 +97,7 @@ TEST(Report, EqualInputGivesEqualBytes) { EXPECT_EQ(render_report(full()), rende
 
 TEST(Report, RunsDifferOnlyBetweenTheRunLogComments) {
   ReportInput later = small();
-  later.run = RunPart{"2027-02-03 on another host", {{"synergy", 99.5}}};
+  later.run = RunPart{"2027-02-03 on another host", {{"synergy", 99.5}}, {}};
   const std::string a = render_report(small());
   const std::string b = render_report(later);
   EXPECT_NE(a, b);
@@ -122,14 +122,14 @@ TEST(Report, SuccessIsTheShareOfAllRunsAndEachLengthIsNamed) {
   failed.shortened_length.reset();
   input.path = PathPart{};
   input.path->runs = {solved, failed, failed, failed};
-  input.run = RunPart{"log", {{"synergy", 0.25}}};
+  input.run = RunPart{"log", {{"synergy", 0.25}}, {{"plan", "2026-01-01T10:00:00Z", 0.5, 0.25, 2, "host"}}};
   const std::string page = render_report(input);
   const std::size_t row = page.find("here, synergy (4 runs, step 0.4 rad)");
   ASSERT_NE(row, std::string::npos);
   EXPECT_NE(page.substr(row, 200).find("25 %"), std::string::npos) << page.substr(row, 200);
   for (const char* words : {"as planned 2.12 rad in the joint metric, 5.96 rad as the sum of weighted joint movements; "
                             "shortened 1.92 rad in the joint metric",
-                            "synergy: 0.250 s of CPU per run", "check limit"}) {
+                            "synergy: 0.250 s of CPU per run", "check limit", "<td>2026-01-01T10:00:00Z</td>"}) {
     EXPECT_NE(page.find(words), std::string::npos) << words;
   }
   expect_sound(page);

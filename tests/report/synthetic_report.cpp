@@ -318,7 +318,8 @@ ReportInput synthetic_report() {
   input.verification->verdicts.push_back({input.path->id, "path", true, ""});
   input.provenance = provenance(*input.grasps, *input.path, rng);
   input.run = RunPart{"2026-01-01T10:00:00Z host example\nsimulate 0.8 s\nanalyze 2.1 s\ngrasp 14.2 s\nplan 3.3 s",
-                      {{"synergy", 3.3}}};
+                      {{"synergy", 3.3}},
+                      {{"plan", "2026-01-01T10:00:00Z", 3.3, 3.2, 1, "example"}}};
   return input;
 }
 
