@@ -50,6 +50,7 @@ PlanRun run_from(const Json& json, const Json& parameters) {
   run.result.status = status_from(json.at("status"));
   run.result.detail = json.at("detail");
   run.result.goal = json.at("goal_index");
+  if (json.at("goal").is_string()) run.goal_grasp = json.at("goal");
   run.result.iterations = json.at("iterations");
   run.result.extends = json.at("extends");
   run.result.extends_grown = json.at("extends_grown");

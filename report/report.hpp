@@ -125,6 +125,7 @@ struct PlanRun {
   PlanResult result;                          ///< path may be empty: it is not drawn from here
   std::optional<double> shortened_length;     ///< rad, joint metric, after the shortcuts; nullopt: unknown or unsolved
   std::vector<HumanLikeness> human_likeness;  ///< the first is the one of Table 2
+  std::string goal_grasp;                     ///< id of the grasp reached; empty: none
 };
 
 struct PathPart {

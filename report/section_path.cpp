@@ -97,13 +97,13 @@ void run_row(Table& table, const PlanRun& run) {
   }
   const auto length = [&](std::optional<double> value) { return text(solved && value ? fixed(*value, 2) : "n/a"); };
   table.row({text(run.planner), text(std::to_string(run.seed)), badge(solved, words(result.status)),
-             text(solved ? std::to_string(result.goal) : "n/a"), text(grouped(result.iterations)),
+             run.goal_grasp.empty() ? text("n/a") : identifier(run.goal_grasp), text(grouped(result.iterations)),
              text(grouped(result.collision_checks)), length(result.length), length(result.length_l1),
              length(run.shortened_length), text(likeness)});
 }
 
 Markup run_table(const PathPart& part) {
-  Table table("Runs", {"planner", "seed", "status", "goal", "iterations", "collision checks",
+  Table table("Runs", {"planner", "seed", "status", "grasp reached", "iterations", "collision checks",
                        "planned length (rad, joint metric)", "planned length (rad, sum of joints)",
                        "shortened length (rad, joint metric)", "human-likeness, with its reference"});
   for (const auto& run : part.runs) run_row(table, run);
