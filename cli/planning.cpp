@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <ctime>
+#include <utility>
 
 #include "core/require.hpp"
 #include "motion/closing_segment.hpp"
@@ -26,11 +27,12 @@ LikenessReference grasp_phase_reference(const SynergyGroup& group) {
 
 /// Paths keep this distance from the scene, so that they do not touch it between the samples they are checked at: at
 /// 0.002 rad the hand moves 2 mm, and a fingertip of 6 mm radius that passes an edge comes 0.08 mm nearer between two
-/// samples. 0 where the start is nearer than that to something.
-double margin_at(const Eigen::VectorXd& start, const NamedWorld& world) {
+/// samples. No margin where the start is nearer than that to something.
+FreeSpace free_space(const Eigen::VectorXd& start, const NamedWorld& world) {
   constexpr double kMargin = 0.0005;  // m
-  const robot::CollisionChecker grown(world.robot, motion::grown_scene(world.scene, kMargin));
-  return grown.free(start) ? kMargin : 0.0;
+  robot::CollisionChecker grown(world.robot, motion::grown_scene(world.scene, kMargin));
+  if (grown.free(start)) return {kMargin, std::move(grown)};
+  return {0.0, robot::CollisionChecker(world.robot, world.scene)};
 }
 
 double thread_cpu_seconds() {
@@ -75,12 +77,11 @@ Planning::Planning(const PlanOptions& options, const NamedWorld& world, Query qu
       world_(world),
       query_(std::move(query)),
       free_motion_(std::move(free_motion)),
-      margin_(margin_at(query_.start, world)),
-      checker_(world.robot, motion::grown_scene(world.scene, margin_)),
-      closing_free_(world.robot, motion::grown_scene(world.scene, margin_, world.object)),
-      closing_(world.robot, motion::grown_scene(world.scene, margin_, world.object), world.hand_object_pairs()),
+      free_(free_space(query_.start, world)),
+      closing_free_(world.robot, motion::grown_scene(world.scene, free_.margin, world.object)),
+      closing_(world.robot, motion::grown_scene(world.scene, free_.margin, world.object), world.hand_object_pairs()),
       depth_(world.robot, world.scene, world.object, world.hand_links()),
-      space_(motion::make_world(checker_, world.robot, options.resolution)) {
+      space_(motion::make_world(free_.checker, world.robot, options.resolution)) {
   settings_.variant = options.planner == "synergy" ? motion::Variant::synergy : motion::Variant::rrtconnect;
   settings_.step = options.step;
   settings_.max_checks = options.max_checks;

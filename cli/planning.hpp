@@ -44,6 +44,12 @@ struct Run {
   Json human_likeness = Json::array();
 };
 
+/// What paths keep clear of.
+struct FreeSpace {
+  double margin;  ///< m, that the scene's bodies are grown by
+  robot::CollisionChecker checker;
+};
+
 /// What every run shares, read only: one may run on each thread.
 class Planning {
  public:
@@ -54,8 +60,8 @@ class Planning {
   /// Goals whose closing segment is not valid at the chosen resolution have been left out of it.
   const Query& query() const { return query_; }
   std::size_t goals_left_out() const { return goals_left_out_; }
-  const robot::CollisionChecker& checker() const { return checker_; }
-  bool keeps_margin() const { return margin_ > 0.0; }
+  const robot::CollisionChecker& checker() const { return free_.checker; }
+  bool keeps_margin() const { return free_.margin > 0.0; }
   Run run(std::uint64_t seed) const;
 
  private:
@@ -68,8 +74,7 @@ class Planning {
   const NamedWorld& world_;
   Query query_;
   std::optional<analysis::LikenessReference> free_motion_;
-  double margin_;  ///< m, that the scene's bodies are grown by
-  robot::CollisionChecker checker_;
+  FreeSpace free_;
   robot::CollisionChecker closing_free_;  ///< of the closing segment: the object as it is
   robot::CollisionChecker closing_;       ///< the same, hand-object pairs left out
   motion::ContactDepth depth_;

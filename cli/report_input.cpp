@@ -208,10 +208,13 @@ void add_world_and_results(const storage::Store& store, const std::string& syner
     input.verification = verify_part(found);
     for (const auto& verdict : input.verification->verdicts) verdicts[verdict.id] = verdict.passed;
   }
-  const auto plans = plans_of(store, synergies);
-  const auto grasp = newest_made_from(store, kGrasp, {synergies});
-  if (!grasp) return;
-  const storage::Record record = store.read(plans.empty() ? *grasp : plans.front().id);
+  const auto grasps = made_from(store, kGrasp, {synergies});
+  if (grasps.empty()) return;
+  std::set<std::string> grasp_ids;
+  for (const auto& entry : grasps) grasp_ids.insert(entry.id);
+  const auto plans = made_from(store, kPlanRuns, grasp_ids);
+  const std::string& newest_grasp = grasps.front().id;
+  const storage::Record record = store.read(plans.empty() ? newest_grasp : plans.front().id);
   const Json world = parameters_of(record).at("world");
   NamedWorld loaded = load_world(world.at("robot"), world.at("scene"), world.at("object"));
   input.robot = std::move(loaded.robot);
@@ -219,7 +222,7 @@ void add_world_and_results(const storage::Store& store, const std::string& syner
   input.scene = std::move(loaded.scene);
   input.grasps = grasp_part(store, synergies, world_key(record), verdicts);
   input.path = path_part(store, plans);
-  input.provenance = chain_of(store, input.path && !input.path->id.empty() ? input.path->id : *grasp);
+  input.provenance = chain_of(store, input.path && !input.path->id.empty() ? input.path->id : newest_grasp);
 }
 
 }  // namespace

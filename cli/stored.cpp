@@ -88,28 +88,14 @@ std::optional<std::string> newest(const storage::Store& store, const char* kind)
   return entries.empty() ? std::nullopt : std::optional(entries.back().id);
 }
 
-std::optional<std::string> newest_made_from(const storage::Store& store, const char* kind,
-                                            const std::set<std::string>& inputs) {
-  const auto entries = store.list_as_produced(kind);
-  const auto found = std::find_if(entries.rbegin(), entries.rend(), [&](const storage::IndexEntry& entry) {
-    return std::any_of(entry.inputs.begin(), entry.inputs.end(), [&](const auto& id) { return inputs.contains(id); });
+std::vector<storage::IndexEntry> made_from(const storage::Store& store, const char* kind,
+                                           const std::set<std::string>& inputs) {
+  auto entries = store.list_as_produced(kind);
+  std::erase_if(entries, [&](const storage::IndexEntry& entry) {
+    return std::none_of(entry.inputs.begin(), entry.inputs.end(), [&](const auto& id) { return inputs.contains(id); });
   });
-  return found == entries.rend() ? std::nullopt : std::optional(found->id);
-}
-
-std::vector<storage::IndexEntry> plans_of(const storage::Store& store, const std::string& synergies) {
-  std::set<std::string> grasps;
-  for (const auto& entry : store.list(kGrasp)) {
-    if (std::find(entry.inputs.begin(), entry.inputs.end(), synergies) != entry.inputs.end()) grasps.insert(entry.id);
-  }
-  std::vector<storage::IndexEntry> plans;
-  for (const auto& entry : store.list_as_produced(kPlanRuns)) {
-    if (std::any_of(entry.inputs.begin(), entry.inputs.end(), [&](const auto& id) { return grasps.contains(id); })) {
-      plans.push_back(entry);
-    }
-  }
-  std::reverse(plans.begin(), plans.end());
-  return plans;
+  std::reverse(entries.begin(), entries.end());
+  return entries;
 }
 
 Stored<SynergySet> newest_synergies(const storage::Store& store) {

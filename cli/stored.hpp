@@ -55,11 +55,9 @@ Motions hand_motions(const storage::Store& store);
 
 /// "newest" is what was made last, also when it had been made before (Store::list_as_produced).
 std::optional<std::string> newest(const storage::Store& store, const char* kind);
-/// The newest object of a kind that was made from any of the given objects.
-std::optional<std::string> newest_made_from(const storage::Store& store, const char* kind,
-                                            const std::set<std::string>& inputs);
-/// The records of plan commands to grasps of these synergies, the newest first.
-std::vector<storage::IndexEntry> plans_of(const storage::Store& store, const std::string& synergies);
+/// The objects of a kind that were made from any of the given objects, the newest first.
+std::vector<storage::IndexEntry> made_from(const storage::Store& store, const char* kind,
+                                           const std::set<std::string>& inputs);
 /// The newest synergy set. Throws InputError saying which command makes one when there is none.
 Stored<SynergySet> newest_synergies(const storage::Store& store);
 /// The grasp-phase group of that name. Throws InputError when the set has none: a grasp names its group.
