@@ -19,6 +19,7 @@ static_assert(std::is_same_v<hsize_t, unsigned long long>);
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+constexpr std::size_t kConversionBytes = 4096;
 constexpr unsigned kCompactLinks = 64;  // a group with more of them is indexed
 // libhdf5 refuses to open an image under the name of a file that exists; names in messages are shown without this.
 constexpr const char* kInMemory = " (in memory)";
@@ -69,11 +70,20 @@ Handle group_properties() {
   return creation;
 }
 
+/// Strings are converted through buffers that libhdf5 clears for every dataset: 1 MB unless told otherwise, which would
+/// take longer than all the rest of writing.
+Handle transfer_properties() {
+  Handle transfer = properties(H5P_DATASET_XFER);
+  checked(H5Pset_buffer(transfer.id(), kConversionBytes, nullptr, nullptr), -1, "", "choose a buffer");
+  return transfer;
+}
+
 /// Returns the place of contiguous values in the file, 0 where there are none.
 std::uint64_t write_raw_dataset(const Handle& group, const std::string& name, hid_t stored_type, hid_t memory_type,
                                 std::span<const hsize_t> shape, const void* data) {
   static const Handle creation = object_properties(H5P_DATASET_CREATE);
   static const Handle linking = utf8_names(H5P_LINK_CREATE);
+  static const Handle transfer = transfer_properties();
   const Handle space = space_of(shape);
   const Handle dataset(
       checked(H5Dcreate2(group.id(), name.c_str(), stored_type, space.id(), linking.id(), creation.id(), H5P_DEFAULT),
@@ -81,7 +91,7 @@ std::uint64_t write_raw_dataset(const Handle& group, const std::string& name, hi
       H5Dclose);
   const bool empty = std::find(shape.begin(), shape.end(), hsize_t{0}) != shape.end();
   if (empty) return 0;
-  checked(H5Dwrite(dataset.id(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), group.id(), name,
+  checked(H5Dwrite(dataset.id(), memory_type, H5S_ALL, H5S_ALL, transfer.id(), data), group.id(), name,
           "write the dataset");
   const haddr_t place = H5Dget_offset(dataset.id());
   if (place == HADDR_UNDEF) fail(group.id(), name, "write the dataset", "its values have no place in the file");

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "storage/index.hpp"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>
@@ -199,13 +200,17 @@ std::string encode_index_block(const std::string& file, const std::vector<IndexE
   append(bytes, inputs);
   append(bytes, writer.ends());
   bytes += writer.texts();
-  bytes.resize((bytes.size() + 7) / 8 * 8, '\0');
+  seal_index_block(bytes);
+  return bytes;
+}
+
+void seal_index_block(std::string& bytes) {
+  bytes.resize(std::max(kHeader, (bytes.size() + 7) / 8 * 8), '\0');
   const std::uint64_t size = bytes.size();
   const std::uint64_t sum = sum_of(std::string_view(bytes).substr(kSummedFrom));
   std::memcpy(bytes.data(), kMagic.data(), kMagic.size());
   std::memcpy(bytes.data() + 8, &size, sizeof size);
   std::memcpy(bytes.data() + 16, &sum, sizeof sum);
-  return bytes;
 }
 
 std::string id_text(std::string_view raw_id) {

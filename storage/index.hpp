@@ -57,6 +57,9 @@ ParsedIndex parse_index(std::string_view bytes);
 /// id is not 64 lower-case hex digits.
 std::string encode_index_block(const std::string& file, const std::vector<IndexEntry>& entries);
 
+/// Makes magic, size and sum of a block fit the bytes that follow them. bytes is padded to a multiple of 8.
+void seal_index_block(std::string& bytes);
+
 /// 64 lower-case hex digits of 32 bytes.
 std::string id_text(std::string_view raw_id);
 
