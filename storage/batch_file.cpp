@@ -73,6 +73,14 @@ struct PayloadSize {
   std::size_t operator()(const Eigen::MatrixXd& values) const { return 8 * static_cast<std::size_t>(values.size()); }
 };
 
+/// The group of the objects in a new file.
+hdf5::Handle begin_batch(const hdf5::Handle& file) {
+  const hdf5::Handle root = hdf5::open_group(file, "/");
+  hdf5::write_attribute(root, "format", std::string(kBatchFormat));
+  hdf5::write_attribute(root, "schema_version", std::int64_t{kSchemaVersion});
+  return hdf5::create_group(root, "objects");
+}
+
 std::string slot_name(std::size_t slot) {
   char text[24];
   std::snprintf(text, sizeof text, "%06zu", slot);
@@ -83,23 +91,59 @@ std::string slot_name(std::size_t slot) {
 
 std::vector<std::byte> encode_batch(std::span<const Record* const> records, std::span<const std::string> ids) {
   std::vector<std::byte> bytes;
-  std::vector<ArrayOffsets> arrays;
+  ContentsBuilder contents;
   {
     const auto lock = hdf5::lock_library();
     const hdf5::Handle file = hdf5::create_in_memory();
     {
-      const hdf5::Handle root = hdf5::open_group(file, "/");
-      hdf5::write_attribute(root, "format", std::string(kBatchFormat));
-      hdf5::write_attribute(root, "schema_version", std::int64_t{kSchemaVersion});
-      const hdf5::Handle objects = hdf5::create_group(root, "objects");
+      const hdf5::Handle objects = begin_batch(file);
       for (std::size_t i = 0; i < records.size(); ++i) {
-        arrays.push_back(write_object(objects, slot_name(i), *records[i], ids[i]));
+        contents.add(*records[i], ids[i], write_object(objects, slot_name(i), *records[i], ids[i]));
       }
     }
     bytes = hdf5::image(file);
   }
-  append_contents(bytes, records, ids, arrays);
+  const std::vector<std::byte> rest = contents.finish(bytes.size());
+  bytes.insert(bytes.end(), rest.begin(), rest.end());
   return bytes;
+}
+
+struct BatchFileWriter::Parts {
+  hdf5::Handle file;
+  hdf5::Handle objects;
+  ContentsBuilder contents{};
+  std::size_t count = 0;
+};
+
+BatchFileWriter::BatchFileWriter(std::filesystem::path path) : path_(std::move(path)) {
+  const auto lock = hdf5::lock_library();
+  hdf5::Handle file = hdf5::create_on_disk(path_.string());
+  hdf5::Handle objects = begin_batch(file);
+  parts_.reset(new Parts{std::move(file), std::move(objects)});
+}
+
+BatchFileWriter::~BatchFileWriter() {
+  const auto lock = hdf5::lock_library();
+  parts_.reset();
+}
+
+void BatchFileWriter::add(const Record& record, const std::string& id) {
+  const auto lock = hdf5::lock_library();
+  parts_->contents.add(record, id, write_object(parts_->objects, slot_name(parts_->count++), record, id));
+}
+
+void BatchFileWriter::finish() {
+  ContentsBuilder contents = std::move(parts_->contents);
+  {
+    const auto lock = hdf5::lock_library();
+    hdf5::flush(parts_->file);
+    parts_.reset();
+  }
+  const auto state = file_state(path_);
+  if (!state) throw_errno("cannot read what was written", path_);
+  const std::vector<std::byte> rest = contents.finish(state->size);
+  append_bytes(path_, {reinterpret_cast<const char*>(rest.data()), rest.size()});
+  sync_file(path_);
 }
 
 std::size_t payload_bytes(const Record& record) {

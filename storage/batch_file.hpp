@@ -29,6 +29,20 @@ class NewerSchemaError : public StorageError {
 /// The HDF5 bytes of a batch. ids are the records' content hashes. Equal input gives equal bytes.
 std::vector<std::byte> encode_batch(std::span<const Record* const> records, std::span<const std::string> ids);
 
+/// Writes the same form to a new file of any size, record by record; durable when finish returns.
+class BatchFileWriter {
+ public:
+  explicit BatchFileWriter(std::filesystem::path path);
+  ~BatchFileWriter();
+  void add(const Record& record, const std::string& id);
+  void finish();
+
+ private:
+  struct Parts;
+  std::filesystem::path path_;
+  std::unique_ptr<Parts> parts_;
+};
+
 /// Roughly what a record takes in a file before compression, in bytes.
 std::size_t payload_bytes(const Record& record);
 

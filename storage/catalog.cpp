@@ -178,6 +178,12 @@ std::vector<Catalog::Place> Catalog::find(const std::string& prefix) const {
   return places;
 }
 
+std::optional<std::vector<IndexEntry>> Catalog::entries(const std::string& file) const {
+  const auto block =
+      std::find_if(blocks_.begin(), blocks_.end(), [&](const IndexBlock& known) { return known.file() == file; });
+  return block == blocks_.end() ? std::nullopt : std::optional(entries_of(*block));
+}
+
 std::string Catalog::last_id() const {
   for (std::size_t block = blocks_.size(); block-- > 0;) {
     const std::size_t size = blocks_[block].size();

@@ -56,6 +56,8 @@ class Catalog {
   std::vector<Place> find(const std::string& prefix) const;
   bool contains(const std::string& id) const { return !find(id).empty(); }
   IndexEntry entry(Place place) const { return blocks_[place.block].entry(place.position); }
+  /// What a file holds; nullopt when it is not known.
+  std::optional<std::vector<IndexEntry>> entries(const std::string& file) const;
   /// Of the last object; empty when there is none.
   std::string last_id() const;
 

@@ -181,27 +181,30 @@ std::string place_of(const ReadOnlyFile& file, std::size_t position) {
 
 }  // namespace
 
-void append_contents(std::vector<std::byte>& file, std::span<const Record* const> records,
-                     std::span<const std::string> ids, std::span<const ArrayOffsets> arrays) {
-  std::vector<std::uint64_t> starts;
-  for (std::size_t i = 0; i < records.size(); ++i) {
-    starts.push_back(file.size());
-    ContentsSink sink{file, arrays[i]};
-    Canonical<ContentsSink> canonical(sink);
-    sink.bytes(bytes_of(kPartMarker));
-    canonical.text(ids[i]);
-    const std::size_t length_at = file.size();
-    canonical.number(0);
-    canonical.record(*records[i]);
-    const std::uint64_t length = file.size() - length_at - sizeof(std::uint64_t);
-    std::memcpy(file.data() + length_at, &length, sizeof length);
-  }
-  starts.push_back(file.size());
-  ContentsSink sink{file, {}};
-  sink.bytes(std::as_bytes(std::span(starts)));
-  Canonical<ContentsSink>(sink).number(records.size());
-  Canonical<ContentsSink>(sink).number(starts.back());
+void ContentsBuilder::add(const Record& record, const std::string& id, const ArrayOffsets& arrays) {
+  starts_.push_back(parts_.size());
+  ContentsSink sink{parts_, arrays};
+  Canonical<ContentsSink> canonical(sink);
+  sink.bytes(bytes_of(kPartMarker));
+  canonical.text(id);
+  const std::size_t length_at = parts_.size();
+  canonical.number(0);
+  canonical.record(record);
+  const std::uint64_t length = parts_.size() - length_at - sizeof(std::uint64_t);
+  std::memcpy(parts_.data() + length_at, &length, sizeof length);
+}
+
+std::vector<std::byte> ContentsBuilder::finish(std::uint64_t hdf5_bytes) {
+  const std::uint64_t count = starts_.size();
+  starts_.push_back(parts_.size());
+  for (auto& start : starts_) start += hdf5_bytes;
+  const ArrayOffsets none;
+  ContentsSink sink{parts_, none};
+  sink.bytes(std::as_bytes(std::span(starts_)));
+  Canonical<ContentsSink>(sink).number(count);
+  Canonical<ContentsSink>(sink).number(starts_.back());
   sink.bytes(bytes_of(kTrailerMarker));
+  return std::move(parts_);
 }
 
 std::optional<ContentsReader> ContentsReader::open(const ReadOnlyFile& file) {

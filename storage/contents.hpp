@@ -21,9 +21,17 @@ namespace opponens::storage {
 /// Where the values of an object's arrays are: one offset in the file per field of rank 1 or 2, in order of name.
 using ArrayOffsets = std::vector<std::uint64_t>;
 
-/// Appends the contents to the HDF5 bytes of a file.
-void append_contents(std::vector<std::byte>& file, std::span<const Record* const> records,
-                     std::span<const std::string> ids, std::span<const ArrayOffsets> arrays);
+/// Collects the contents while the HDF5 part is written.
+class ContentsBuilder {
+ public:
+  void add(const Record& record, const std::string& id, const ArrayOffsets& arrays);
+  /// The bytes that follow an HDF5 part of that many bytes; the object is used up.
+  std::vector<std::byte> finish(std::uint64_t hdf5_bytes);
+
+ private:
+  std::vector<std::byte> parts_;
+  std::vector<std::uint64_t> starts_;  // in parts_
+};
 
 /// What the contents tell of an object beside its fields.
 struct ObjectHead {

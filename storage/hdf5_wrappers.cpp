@@ -8,6 +8,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "core/require.hpp"
 #include "storage/hdf5_calls.hpp"
 #include "storage/store.hpp"
 
@@ -40,14 +41,27 @@ void silence() {
   (void)done;
 }
 
-Handle memory_access() {
+Handle file_access() {
   silence();
   Handle access = properties(H5P_FILE_ACCESS);
-  checked(H5Pset_fapl_core(access.id(), kMemoryStep, false), -1, "", "choose the in-memory driver");
   // The oldest form that holds what is written, readable by every libhdf5. Newer superblocks carry a checksum that
   // H5Fget_file_image of libhdf5 1.10.8 leaves wrong; integrity is the SHA-256's business anyway.
   checked(H5Pset_libver_bounds(access.id(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V18), -1, "", "choose the file format");
   return access;
+}
+
+Handle memory_access() {
+  Handle access = file_access();
+  checked(H5Pset_fapl_core(access.id(), kMemoryStep, false), -1, "", "choose the in-memory driver");
+  return access;
+}
+
+Handle create(const std::string& name, const Handle& access) {
+  const Handle creation = properties(H5P_FILE_CREATE);
+  checked(H5Pset_obj_track_times(creation.id(), false), -1, "", "switch off time stamps");
+  const hid_t file = H5Fcreate(name.c_str(), H5F_ACC_TRUNC, creation.id(), access.id());
+  if (file < 0) throw InputError(name + ": cannot create: " + reason());
+  return {file, H5Fclose};
 }
 
 Handle space_of(std::span<const hsize_t> shape) {
@@ -178,16 +192,14 @@ Handle& Handle::operator=(Handle&& other) noexcept {
   return *this;
 }
 
-Handle create_in_memory() {
-  const Handle access = memory_access();
-  const Handle creation = properties(H5P_FILE_CREATE);
-  checked(H5Pset_obj_track_times(creation.id(), false), -1, "", "switch off time stamps");
-  return {checked(H5Fcreate("batch", H5F_ACC_TRUNC, creation.id(), access.id()), -1, "", "create a file in memory"),
-          H5Fclose};
-}
+Handle create_in_memory() { return create("batch", memory_access()); }
+
+Handle create_on_disk(const std::string& path) { return create(path, file_access()); }
+
+void flush(const Handle& file) { checked(H5Fflush(file.id(), H5F_SCOPE_GLOBAL), file.id(), "", "finish the file"); }
 
 std::vector<std::byte> image(const Handle& file) {
-  checked(H5Fflush(file.id(), H5F_SCOPE_GLOBAL), file.id(), "", "finish the file");
+  flush(file);
   const ssize_t size = checked(H5Fget_file_image(file.id(), nullptr, 0), file.id(), "", "size the file");
   std::vector<std::byte> bytes(static_cast<std::size_t>(size));
   checked(H5Fget_file_image(file.id(), bytes.data(), bytes.size()), file.id(), "", "copy the file");

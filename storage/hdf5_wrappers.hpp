@@ -40,6 +40,10 @@ class Handle {
 Handle create_in_memory();
 std::vector<std::byte> image(const Handle& file);
 
+/// A file of any size on the disk, of the same form; an existing one is replaced.
+Handle create_on_disk(const std::string& path);
+void flush(const Handle& file);  ///< tells what closing could not
+
 /// Opens the bytes of a file, read-only. name is for messages.
 Handle open_in_memory(std::span<const std::byte> bytes, const std::string& name);
 

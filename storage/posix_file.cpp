@@ -124,6 +124,11 @@ void write_new_file(const std::filesystem::path& path, std::span<const std::byte
   file.close();
 }
 
+void sync_file(const std::filesystem::path& path) {
+  const Descriptor file(path, O_RDONLY, "cannot open");
+  sync(file, path);
+}
+
 void sync_directory(const std::filesystem::path& directory) {
   const Descriptor file(directory, O_RDONLY | O_DIRECTORY, "cannot open");
   sync(file, directory);

@@ -52,6 +52,9 @@ std::optional<FileState> file_state(const std::filesystem::path& path);
 enum class Durable { no, yes };
 void write_new_file(const std::filesystem::path& path, std::span<const std::byte> bytes, Durable durable);
 
+/// Waits until the disk has a file.
+void sync_file(const std::filesystem::path& path);
+
 /// Makes renames and removals inside directory durable.
 void sync_directory(const std::filesystem::path& directory);
 
