@@ -63,6 +63,7 @@ storage::Record recording_record(const Demonstration& motion, const storage::Fil
 }  // namespace
 
 int ingest(const IngestOptions& options, const Console& console) {
+  if (options.source.empty()) return ingest_single_files(options, console);
   const auto source_file = find_file(options.source);
   const auto source = storage::load_source(source_file);
   const auto reading = storage::read_source(options.paths, source);

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdio>
 #include <system_error>
 #include <utility>
 
@@ -122,6 +123,10 @@ void write_new_file(const std::filesystem::path& path, std::span<const std::byte
   write_all(file, bytes, path);
   if (durable == Durable::yes) sync(file, path);
   file.close();
+}
+
+void rename_file(const std::filesystem::path& from, const std::filesystem::path& to) {
+  if (::rename(from.c_str(), to.c_str()) != 0) throw_errno("cannot rename into place", to);
 }
 
 void sync_file(const std::filesystem::path& path) {

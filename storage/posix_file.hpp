@@ -52,6 +52,9 @@ std::optional<FileState> file_state(const std::filesystem::path& path);
 enum class Durable { no, yes };
 void write_new_file(const std::filesystem::path& path, std::span<const std::byte> bytes, Durable durable);
 
+/// Renames inside one file system, replacing what is there.
+void rename_file(const std::filesystem::path& from, const std::filesystem::path& to);
+
 /// Waits until the disk has a file.
 void sync_file(const std::filesystem::path& path);
 

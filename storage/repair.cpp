@@ -53,17 +53,19 @@ std::string rewrite(const fs::path& directory, const std::string& damaged, const
   const std::string name = batch_file_name(static_cast<std::size_t>(batch_number(damaged)), bytes);
   const fs::path temporary = directory / (".tmp-" + std::to_string(::getpid()) + "-" + name);
   write_new_file(temporary, bytes, Durable::yes);
-  fs::rename(temporary, directory / name);
+  rename_file(temporary, directory / name);
   sync_directory(directory);
   return name;
 }
 
 void set_aside(const fs::path& directory, const std::string& file) {
   const fs::path folder = directory / kDamagedFolder;
-  fs::create_directories(folder);
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw InputError(folder.string() + ": cannot make the folder: " + error.message());
   fs::path place = folder / file;
   for (int i = 2; fs::exists(place); ++i) place = folder / (file + "." + std::to_string(i));
-  fs::rename(directory / file, place);
+  rename_file(directory / file, place);
   sync_directory(folder);
   sync_directory(directory);
 }
@@ -127,7 +129,8 @@ class Repair {
   }
 
   void replace_index() {
-    fs::remove(directory_ / kIndexName);
+    std::error_code ignored;
+    fs::remove(directory_ / kIndexName, ignored);
     after_.save(directory_);
   }
 

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "storage/single_file.hpp"
 
-#include <unistd.h>
-
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
@@ -11,6 +9,7 @@
 #include "core/require.hpp"
 #include "storage/batch_file.hpp"
 #include "storage/contents.hpp"
+#include "storage/draft.hpp"
 
 namespace opponens::storage {
 namespace {
@@ -41,29 +40,6 @@ class Copier {
   std::unordered_set<std::string> present_;
   std::vector<Record> records_;
   std::size_t bytes_ = 0;
-};
-
-/// A file under another name until it is complete.
-class Draft {
- public:
-  explicit Draft(std::filesystem::path final_path)
-      : final_(std::move(final_path)), path_(final_.string() + ".tmp-" + std::to_string(::getpid())) {}
-  ~Draft() {
-    std::error_code ignored;
-    std::filesystem::remove(path_, ignored);
-  }
-  Draft(const Draft&) = delete;
-  Draft& operator=(const Draft&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-  void complete() const {
-    std::error_code error;
-    std::filesystem::rename(path_, final_, error);
-    if (error) throw InputError(final_.string() + ": cannot rename into place: " + error.message());
-  }
-
- private:
-  std::filesystem::path final_;
-  std::filesystem::path path_;
 };
 
 }  // namespace
