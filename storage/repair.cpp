@@ -84,7 +84,8 @@ class Repair {
   }
 
   RepairReport run() {
-    const Catalog::Changes known = catalog_.load(directory_, files_);
+    catalog_.load(directory_);
+    const Catalog::Changes known = catalog_.arrange(files_);
     for (const auto& gone : known.gone) {
       report_.files.push_back({gone.file, "the file is missing", {}, gone.entries, true});
     }
