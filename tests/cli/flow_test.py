@@ -15,7 +15,8 @@ from html.parser import HTMLParser
 
 import h5py
 
-from support import HEADER, SOURCE, data_set, forge, must, rows, run, snapshot, start, without_run_log
+from support import (HEADER, SOURCE, data_set, forge, must, rows, run, snapshot, start, wait_for_cpu_time, without_run_log,
+                     written_since)
 
 SCENE = "models/scenes/cylinder_shelf.yaml"
 
@@ -162,7 +163,7 @@ class Pipeline(unittest.TestCase):
             store = self.copied(folder)
             before = {one["id"] for one in must("show", "--store", store)["objects"]}
             program = start("plan", "--store", store, "--scene", SCENE, "--runs", 100000, "--seed", 100, "--threads", 2)
-            time.sleep(8)
+            wait_for_cpu_time(program, seconds=10)  # setting up the worlds takes 2 to 3, a run some ms
             program.send_signal(signal.SIGINT)
             _, err = program.communicate(timeout=120)
             self.assertEqual(program.returncode, 130, err)
@@ -428,10 +429,9 @@ class Demo(unittest.TestCase):
             self.assertTrue((out / ".opponens-demo").exists())
             stale = out / "store" / "stale.txt"
             stale.write_text("of the demo before")
+            begin = time.time()
             program = start("demo", "--out", out)
-            for _ in range(600):
-                if not stale.exists() and snapshot(out / "store"):
-                    break
+            while program.poll() is None and not written_since(out / "store", begin):
                 time.sleep(0.1)
             program.send_signal(signal.SIGINT)
             program.communicate(timeout=120)
