@@ -106,6 +106,7 @@ Demonstration decode_demonstration(const Record& record) {
 Record encode(const SynergySet& set, const Provenance& provenance) {
   Record record{"synergy_set", "synergies", provenance, {}};
   record.fields["joint_names"] = set.joint_names;
+  if (set.order != 0) record.fields["order"] = std::int64_t{set.order};
   record.fields["grasp_count"] = static_cast<std::int64_t>(set.grasp.size());
   encode_group(record, "pre_grasp.", set.pre_grasp);
   for (std::size_t i = 0; i < set.grasp.size(); ++i) {
@@ -118,6 +119,8 @@ SynergySet decode_synergy_set(const Record& record) {
   const FieldReader read(record, "synergy_set");
   SynergySet set;
   set.joint_names = read.texts("joint_names");
+  if (record.fields.contains("order")) set.order = read.small_integer("order");
+  read.expect(set.order == 0 || set.order == 1, "order", "0 or 1");
   set.pre_grasp = decode_group(read, "pre_grasp.");
   const int count = read.small_integer("grasp_count");
   for (int i = 0; i < count; ++i) set.grasp.push_back(decode_group(read, grasp_prefix(i)));
