@@ -247,6 +247,31 @@ class Pipeline(unittest.TestCase):
             self.assertIn(kind, kinds)
         self.assertEqual(kinds.count("demonstration"), kinds.count("hand_demonstration"))
 
+    def test_synergy_sets_are_compared(self):
+        with tempfile.TemporaryDirectory() as folder:
+            store = self.copied(folder)
+            same = must("compare", "--store", store, "--with", self.one / "store")
+            self.assertEqual(same["a"], same["b"])
+            self.assertEqual([group["name"] for group in same["groups"]], ["pre-grasp", "1", "2", "3", "4"])
+            for group in same["groups"]:
+                self.assertLess(group["distance_rad"], 1e-6)
+                self.assertLess(abs(group["bhattacharyya"]), 1e-9)
+            first = same["a"]
+            must("analyze", "--store", store, "--transition", "changepoint")
+            second = must("compare", "--store", store, "--with", self.one / "store")["a"]
+            other = must("compare", first[:12], second[:12], "--store", store)
+            self.assertEqual((other["a"], other["b"]), (first, second))
+            self.assertGreater(min(group["bhattacharyya"] for group in other["groups"]), 1e-3)
+            back = must("compare", second, first, "--store", store)
+            for one, two in zip(other["groups"], back["groups"]):
+                self.assertEqual(one["k"], two["k"][::-1])
+                self.assertAlmostEqual(one["distance_rad"], two["distance_rad"], places=9)
+            for arguments, said in (((), "name two synergy sets"), ((first,), "name two synergy sets"),
+                                    ((first, self.documents["plan"]["ids"][0]), "no synergy set")):
+                code, _, err = run("compare", *arguments, "--store", store)
+                self.assertEqual(code, 2)
+                self.assertIn(said, err)
+
     def test_h5py_reads_the_store(self):
         kinds = set()
         for file in (self.one / "store").glob("*.h5"):
