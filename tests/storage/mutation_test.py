@@ -171,7 +171,7 @@ def run(folder, kind, yaml, seeds, expected):
                 path.unlink()
         program.stdin.close()
         assert program.wait(timeout=60) == 0
-    print(f"{kind}: {COUNT} files, {accepted} accepted with the right values but {len(wrong)}, {reasons}")
+    print(f"{kind}: {COUNT} files, {accepted} accepted, {len(wrong)} of them wrongly, {reasons}")
     for number, why in wrong[:10]:
         print(f"  mutation {number}: {why}")
     return wrong
