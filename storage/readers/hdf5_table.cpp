@@ -41,6 +41,18 @@ ColumnPath parse_path(const std::string& name, const fs::path& file) {
   return path;
 }
 
+/// Whether numbers are stored as machines have them. HDF5 can describe others, and one flipped bit of a description
+/// (the bias of an exponent, say) makes other numbers of the same bytes.
+bool is_standard(hid_t type) {
+  for (const hid_t standard :
+       {H5T_IEEE_F64LE, H5T_IEEE_F64BE, H5T_IEEE_F32LE, H5T_IEEE_F32BE, H5T_STD_I8LE,  H5T_STD_U8LE,  H5T_STD_I8BE,
+        H5T_STD_U8BE,   H5T_STD_I16LE,  H5T_STD_U16LE,  H5T_STD_I16BE,  H5T_STD_U16BE, H5T_STD_I32LE, H5T_STD_U32LE,
+        H5T_STD_I32BE,  H5T_STD_U32BE,  H5T_STD_I64LE,  H5T_STD_U64LE,  H5T_STD_I64BE, H5T_STD_U64BE}) {
+    if (H5Tequal(type, standard) > 0) return true;
+  }
+  return false;
+}
+
 /// A dataset of numbers of rank 1 or 2 as doubles.
 RowMajor read_numbers(const Handle& group, const std::string& name) {
   const Handle dataset(
@@ -48,9 +60,8 @@ RowMajor read_numbers(const Handle& group, const std::string& name) {
   const Handle type(hdf5::checked(H5Dget_type(dataset.id()), group.id(), name, "read the type"), H5Tclose);
   const Handle space(hdf5::checked(H5Dget_space(dataset.id()), group.id(), name, "read the shape"), H5Sclose);
   const auto shape = hdf5::shape_of(space, group.id(), name);
-  const H5T_class_t kind = H5Tget_class(type.id());
-  if ((kind != H5T_FLOAT && kind != H5T_INTEGER) || shape.empty() || shape.size() > 2) {
-    hdf5::fail(group.id(), name, "read the dataset", "it is not numbers of rank 1 or 2");
+  if (!is_standard(type.id()) || shape.empty() || shape.size() > 2) {
+    hdf5::fail(group.id(), name, "read the dataset", "it is not IEEE floats or integers of rank 1 or 2");
   }
   const std::uint64_t columns = shape.size() == 2 ? shape[1] : 1;
   constexpr std::uint64_t kMost = std::uint64_t{1} << 28;

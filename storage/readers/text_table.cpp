@@ -38,7 +38,7 @@ Columns find_columns(const CsvReader& csv, const std::filesystem::path& file, co
 /// Cuts the lines into runs that are equal in the text columns, and numbers those of equal text.
 class Runs {
  public:
-  Runs(const std::vector<std::string>& names, const std::filesystem::path& file) : names_(names), file_(file) {}
+  explicit Runs(const std::vector<std::string>& names) : names_(names) {}
 
   /// Whether this line begins a run.
   bool begins(const CsvReader& csv, const std::vector<std::size_t>& columns) {
@@ -66,7 +66,6 @@ class Runs {
 
  private:
   const std::vector<std::string>& names_;
-  const std::filesystem::path& file_;
   std::vector<std::string> now_;
   std::map<std::string, int> seen_;
 };
@@ -82,7 +81,7 @@ void read_text_tables(const std::string& bytes, const std::filesystem::path& fil
   const bool named = source.table.format == TableFormat::csv;
   CsvReader csv(bytes, file, {named, named, source.table.columns, source.table.skip_lines, source.table.transposed});
   const Columns columns = find_columns(csv, file, source);
-  Runs runs(source.table.run_by, file);
+  Runs runs(source.table.run_by);
   Table table;
   table.width = columns.numbers.size();
   const std::size_t expected = bytes.size() / 8;  // values are seldom shorter; vectors grow when they are
