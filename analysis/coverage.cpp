@@ -15,12 +15,6 @@
 namespace opponens::analysis {
 namespace {
 
-void add(Tally& sum, const Tally& part) {
-  sum.total += part.total;
-  sum.full += part.full;
-  sum.kept += part.kept;
-}
-
 Tally sum_of(const std::vector<Tally>& parts) {
   Tally sum;
   for (const Tally& part : parts) add(sum, part);
@@ -78,15 +72,20 @@ void check(const std::vector<Cluster>& clusters, const CoverageSettings& setting
 
 }  // namespace
 
+void add(Tally& sum, const Tally& part) {
+  sum.total += part.total;
+  sum.full += part.full;
+  sum.kept += part.kept;
+}
+
 Walls make_walls(const SampleStatistics& statistics, const CoverageSettings& settings) {
   const SynergyBasis basis = principal_axes(statistics);
   Walls walls;
   walls.k = synergies_needed(basis.variance, settings.beta);
   walls.dof_effective = std::max(1, effective_subspace(statistics.covariance, settings.resolution).dof());
-  const Eigen::VectorXd tolerance =
-      (basis.axes.cwiseAbs2().transpose() * settings.resolution.cwiseAbs2()).cwiseSqrt();
-  walls.reach = box_half_width(basis.variance, settings.alpha, settings.root, walls.dof_effective, walls.k)
-                    .cwiseMax(tolerance);
+  const Eigen::VectorXd tolerance = (basis.axes.cwiseAbs2().transpose() * settings.resolution.cwiseAbs2()).cwiseSqrt();
+  walls.reach =
+      box_half_width(basis.variance, settings.alpha, settings.root, walls.dof_effective, walls.k).cwiseMax(tolerance);
   walls.mean = basis.mean;
   walls.axes = basis.axes;
   return walls;
@@ -102,14 +101,15 @@ std::vector<Walls> held_out_walls(const std::vector<SampleStatistics>& clusters,
 
 Tally count_inside(const Walls& walls, const Eigen::Ref<const Eigen::MatrixXd>& x, double weight) {
   const Eigen::MatrixXd y = (x.rowwise() - walls.mean.transpose()) * walls.axes;
-  Eigen::Array<bool, Eigen::Dynamic, 1> inside = Eigen::Array<bool, Eigen::Dynamic, 1>::Constant(x.rows(), true);
+  Eigen::VectorXd excess = Eigen::VectorXd::Constant(x.rows(), -walls.reach[0]);
+  const auto inside = [&] { return weight * static_cast<double>((excess.array() <= 0.0).count()); };
   Tally tally;
   tally.total = weight * static_cast<double>(x.rows());
   for (Eigen::Index axis = 0; axis < y.cols(); ++axis) {
-    inside = inside && y.col(axis).array().abs() <= walls.reach[axis];
-    if (axis + 1 == walls.k) tally.kept = weight * static_cast<double>(inside.count());
+    excess = excess.array().max(y.col(axis).array().abs() - walls.reach[axis]).matrix();
+    if (axis + 1 == walls.k) tally.kept = inside();
   }
-  tally.full = weight * static_cast<double>(inside.count());
+  tally.full = inside();
   return tally;
 }
 

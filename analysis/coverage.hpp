@@ -58,10 +58,12 @@ struct Tally {
   double kept = 0.0;  ///< inside along the first k
 };
 
+void add(Tally& sum, const Tally& part);
+
 Walls make_walls(const SampleStatistics& statistics, const CoverageSettings& settings);
 
-/// For each of at least two clusters the walls of all others, merged in a fixed tree: O(c (log c n^2 + n^3)) on the given
-/// number of threads, on which the result does not depend.
+/// For each of at least two clusters the walls of all others, merged in a fixed tree: O(c (log c n^2 + n^3)) on the
+/// given number of threads, on which the result does not depend.
 std::vector<Walls> held_out_walls(const std::vector<SampleStatistics>& clusters, const CoverageSettings& settings,
                                   int threads);
 

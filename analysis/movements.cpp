@@ -132,7 +132,8 @@ Result<Movements> read_movements(const RecordingSource& source, const AnalysisSe
     found[place].movement.index = place;
     return !found[place].failure;
   });
-  const auto failed = std::find_if(found.begin(), found.end(), [](const Found& one) { return one.failure.has_value(); });
+  const auto failed =
+      std::find_if(found.begin(), found.end(), [](const Found& one) { return one.failure.has_value(); });
   if (failed != found.end()) return tl::make_unexpected(*failed->failure);
   if (const auto twice = repetition(found)) return tl::make_unexpected(*twice);
   for (Found& one : found) {

@@ -29,8 +29,9 @@ struct Reading {
 };
 
 /// Reads the recordings of the given indices in their order, a batch of bounded size ahead of the work. work(place,
-/// recording): place in `indices`; runs on several threads at once, so it writes to places of its own. Work that returns
-/// false ends the reading after its batch, and the result is false. Batches do not depend on the number of threads.
+/// recording): place in `indices`; runs on several threads at once, so it writes to places of its own. Work that
+/// returns false ends the reading after its batch, and the result is false. Batches do not depend on the number of
+/// threads.
 bool for_each_recording(const RecordingSource& source, const std::vector<std::size_t>& indices, const Reading& reading,
                         const std::function<bool(std::size_t, const Demonstration&)>& work);
 
