@@ -108,6 +108,13 @@ void declare_analyze(CLI::App& app, AnalyzeOptions& options) {
       ->check(CLI::IsMember({"hand", "glove"}));
 }
 
+void declare_compare(CLI::App& app, CompareOptions& options) {
+  app.add_option("ID", options.ids, "Two synergy sets, or the beginnings of their ids; default: the newest")
+      ->expected(0, 2);
+  add_store(app, options.common);
+  app.add_option("--with", options.with, "Store of the second set; default: the same store");
+}
+
 void declare_grasp(CLI::App& app, GraspOptions& options) {
   add_store(app, options.common);
   add_world(app, options);
@@ -198,6 +205,8 @@ void add_commands(Builder& add) {
   add.command<IngestOptions>("ingest", "Read recordings into a store", ingest, declare_ingest);
   add.command<RetargetOptions>("retarget", "Map glove recordings to a robot hand", retarget, declare_retarget);
   add.command<AnalyzeOptions>("analyze", "Phases, synergies and boxes", analyze, declare_analyze);
+  add.command<CompareOptions>("compare", "Distance and principal angles between two synergy sets", compare,
+                              declare_compare);
   add.command<GraspOptions>("grasp", "Search force-closure grasps along the synergies", grasp, declare_grasp);
   add.command<PlanOptions>("plan", "Plan a hand-arm path to one of the grasps", plan, declare_plan);
   add.command<VerifyOptions>("verify", "Check grasps and paths again by code of its own, all else by hash", verify,

@@ -51,6 +51,11 @@ struct AnalyzeOptions {
   std::string phase = "both";  ///< both | none
   std::string input{};         ///< hand | glove; empty: hand when there is any
 };
+struct CompareOptions {
+  Common common{};
+  std::vector<std::string> ids{};  ///< two synergy sets; left out: the newest
+  std::filesystem::path with{};    ///< store of the second; empty: the same store
+};
 struct GraspOptions {
   Common common{};
   std::string robot = "models/ur5_allegro/ur5_allegro_right.yaml";
@@ -117,6 +122,7 @@ int ingest(const IngestOptions& options, const Console& console);
 int ingest_single_files(const IngestOptions& options, const Console& console);  ///< ingest without a source YAML
 int retarget(const RetargetOptions& options, const Console& console);
 int analyze(const AnalyzeOptions& options, const Console& console);
+int compare(const CompareOptions& options, const Console& console);
 int grasp(const GraspOptions& options, const Console& console);
 int plan(const PlanOptions& options, const Console& console);
 int verify(const VerifyOptions& options, const Console& console);

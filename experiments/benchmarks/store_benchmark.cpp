@@ -73,8 +73,7 @@ struct Fixture {
     const hid_t group = H5Gcreate2(file, demonstration.id.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
     const hsize_t shape[] = {static_cast<hsize_t>(kSamples), static_cast<hsize_t>(kChannels)};
     const hid_t space = H5Screate_simple(2, shape, nullptr);
-    const hid_t dataset =
-        H5Dcreate2(group, "q_h", H5T_IEEE_F64LE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    const hid_t dataset = H5Dcreate2(group, "q_h", H5T_IEEE_F64LE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
     H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, demonstration.q_h.data());
     H5Dclose(dataset);
     H5Sclose(space);
