@@ -18,7 +18,7 @@
 namespace opponens::analysis {
 namespace {
 
-constexpr int kSamples = 400000;
+constexpr int kDraws = 400000;
 
 /// Log density of a normal distribution, by a factorisation of its own.
 class Normal {
@@ -60,16 +60,16 @@ class LikenessIntegral : public testing::TestWithParam<int> {
 
 TEST_P(LikenessIntegral, IsTheOverlapOfTheDensities) {
   int kept = 0;
-  for (int i = 0; i < kSamples; ++i) {
+  for (int i = 0; i < kDraws; ++i) {
     kept += rng.uniform() < std::exp(second.log_density(first.draw(rng)) - second.log_peak()) ? 1 : 0;
   }
   const auto share = [&](double log_value) { return std::exp(log_value - second.log_peak()); };
-  EXPECT_TRUE(test::is_binomial(kept, kSamples, share(log_likeness(a, b, 0.0).value())));
+  EXPECT_TRUE(test::is_binomial(kept, kDraws, share(log_likeness(a, b, 0.0).value())));
   // Known-wrong rules: the printed normaliser, and a factor 1/2 forgotten in the covariance.
-  EXPECT_FALSE(test::is_binomial(kept, kSamples, share(log_likeness(a, b, 0.0, Normaliser::printed).value())));
+  EXPECT_FALSE(test::is_binomial(kept, kDraws, share(log_likeness(a, b, 0.0, Normaliser::printed).value())));
   SampleStatistics half = b;
   half.covariance *= 0.5;
-  EXPECT_FALSE(test::is_binomial(kept, kSamples, std::min(1.0, share(log_likeness(a, half, 0.0).value()))));
+  EXPECT_FALSE(test::is_binomial(kept, kDraws, std::min(1.0, share(log_likeness(a, half, 0.0).value()))));
 }
 
 TEST_P(LikenessIntegral, BhattacharyyaCoefficientIsTheIntegralOfTheGeometricMean) {
@@ -87,12 +87,12 @@ TEST_P(LikenessIntegral, BhattacharyyaCoefficientIsTheIntegralOfTheGeometricMean
   };
   const double bound = log_ratio(peak);
   int kept = 0;
-  for (int i = 0; i < kSamples; ++i) kept += rng.uniform() < std::exp(log_ratio(proposal.draw(rng)) - bound) ? 1 : 0;
+  for (int i = 0; i < kDraws; ++i) kept += rng.uniform() < std::exp(log_ratio(proposal.draw(rng)) - bound) ? 1 : 0;
   const double coefficient = bhattacharyya_coefficient(a, b, 0.0).value();
-  EXPECT_TRUE(test::is_binomial(kept, kSamples, coefficient * std::exp(-bound)));
+  EXPECT_TRUE(test::is_binomial(kept, kDraws, coefficient * std::exp(-bound)));
   // Known wrong: the likeness of the two scaled by its value for equal distributions, which is not the same measure.
   const double relative = std::exp(log_likeness(a, b, 0.0).value() - log_likeness(a, a, 0.0).value());
-  EXPECT_FALSE(test::is_binomial(kept, kSamples, std::min(1.0, relative * std::exp(-bound))));
+  EXPECT_FALSE(test::is_binomial(kept, kDraws, std::min(1.0, relative * std::exp(-bound))));
 }
 
 INSTANTIATE_TEST_SUITE_P(Dimensions, LikenessIntegral, testing::Values(1, 2, 4, 8));

@@ -99,7 +99,7 @@ def forge(store, kind, change):
                 group.attrs["id"] = content_hash(read_object(group))
         if groups:
             path.rename(path.with_name(f"{path.stem.split('-')[0]}-{hashlib.sha256(path.read_bytes()).hexdigest()[:32]}.h5"))
-    (store / "index.json").unlink()
+    (store / "index.bin").unlink()
 
 
 def without_run_log(page):
