@@ -174,9 +174,7 @@ struct Stop {};
 }  // namespace
 
 int ingest(const IngestOptions& options, const Console& console) {
-  if (options.source.empty()) {
-    throw InputError("--source is missing: expected a YAML that describes the recordings (docs/ingest.md)");
-  }
+  if (options.source.empty()) return ingest_single_files(options, console);
   const auto source_file = find_file(options.source);
   const auto source = storage::load_source(source_file);
   const std::string source_sha256 = file_sha256(source_file);

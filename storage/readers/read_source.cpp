@@ -78,10 +78,10 @@ struct Observations {
 };
 
 void observe(const Table& table, const RecordingFile& file, const SourceDescription& source, Observations& seen) {
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const auto rows = static_cast<Eigen::Index>(table.rows());
   const auto channels = static_cast<Eigen::Index>(source.channels.size());
-  const Eigen::Map<const RowMajor> values(table.values.data(), rows, static_cast<Eigen::Index>(table.width));
+  const Eigen::Map<const Rows> values(table.values.data(), rows, static_cast<Eigen::Index>(table.width));
   Recording recording;
   recording.demonstration.q_h = values.rightCols(channels);
   for (const auto& channel : source.channels) recording.demonstration.joint_names.push_back(channel.joint);
