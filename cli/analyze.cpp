@@ -8,6 +8,7 @@
 #include "cli/json.hpp"
 #include "cli/resources.hpp"
 #include "cli/stored.hpp"
+#include "cli/world.hpp"
 #include "core/require.hpp"
 #include "robot/load_robot.hpp"
 #include "robot/robot_model.hpp"
@@ -50,7 +51,7 @@ analysis::JointRanges joint_ranges(const std::vector<Stored<Demonstration>>& mot
   const auto& record = motions.front().record;
   if (record.kind != kHandMotion)
     throw InputError("--space normalized needs motions of a robot hand; run: opponens retarget");
-  const robot::RobotModel hand(robot::load_hand(find_file(parameters_of(record).at("hand"))));
+  const robot::RobotModel hand(hand_of_motion(record));
   return {hand.lower(), hand.upper()};
 }
 

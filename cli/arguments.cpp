@@ -75,9 +75,16 @@ void declare_ingest(CLI::App& app, IngestOptions& options) {
 void declare_retarget(CLI::App& app, RetargetOptions& options) {
   add_store(app, options.common);
   app.add_option("--hand", options.hand, "hand.yaml of the robot hand")->capture_default_str();
-  app.add_option("--mapping", options.mapping, "paper: flexion joint to joint, abduction and thumb by fingertips")
-      ->check(CLI::IsMember({"paper"}))
+  app.add_option("--urdf", options.urdf, "URDF of the hand, in place of the one that the hand.yaml names");
+  app.add_option("--mapping", options.mapping,
+                 "joint: joint to joint; fingertip: all joints by fingertips; paper: flexion joint to joint, abduction "
+                 "and thumb by fingertips")
+      ->check(CLI::IsMember({"joint", "fingertip", "paper"}))
       ->capture_default_str();
+  app.add_option("--hand-length", options.hand_length,
+                 "Length of the wearer's hand, m, for recordings without a label hand_length; not with --mapping paper")
+      ->check(CLI::Range(0.1, 0.3));
+  add_threads(app, options.common.threads);
 }
 
 void declare_analyze(CLI::App& app, AnalyzeOptions& options) {
