@@ -3,11 +3,13 @@
 #include "analysis/analyze.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <set>
 #include <utility>
 
+#include "analysis/movements.hpp"
 #include "analysis/pca.hpp"
 #include "analysis/statistics.hpp"
 #include "analysis/subspace.hpp"
@@ -18,184 +20,144 @@ namespace {
 
 /// The samples of one movement that belong to a group.
 struct Part {
-  const Demonstration* demonstration;
-  int first;  ///< row
-  int count;
+  std::size_t movement = 0;  ///< place among the movements
+  bool before = false;       ///< the transition; else from it on
+  std::size_t cluster = 0;
+  Tally in_sample;
+  Tally held_out;
 };
 
 struct Group {
   std::string name;
   std::string phase;
   std::vector<Part> parts;
+  std::vector<SampleStatistics> clusters;
+  CoverageSettings coverage;
+  Walls all;
+  std::vector<Walls> others;  ///< with each cluster left out; empty with a single one
+  SynergyGroup synergies;
+  GroupReport report;
 };
 
-std::string label(const Demonstration& demonstration, const std::string& name) {
-  const auto found = demonstration.labels.find(name);
-  return found == demonstration.labels.end() ? std::string() : found->second;
-}
-
-std::optional<Failure> fault(const Demonstration& demonstration, const std::vector<std::string>& joint_names) {
-  const auto invalid = [&](const std::string& what) {
-    return Failure{FailureCode::invalid_input, "recording " + demonstration.id + ": " + what};
-  };
-  const Eigen::Index samples = demonstration.q_h.rows();
-  if (demonstration.joint_names != joint_names) return invalid("its joints differ from those of the first recording");
-  if (samples < 2 || demonstration.time.size() != samples ||
-      demonstration.q_h.cols() != static_cast<Eigen::Index>(joint_names.size())) {
-    return invalid("needs at least 2 samples, and time and joints of matching size");
-  }
-  if (!demonstration.q_h.allFinite() || !demonstration.time.allFinite()) return invalid("a value is not finite");
-  if (!((demonstration.time.tail(samples - 1) - demonstration.time.head(samples - 1)).array() > 0.0).all()) {
-    return invalid("time does not increase");
-  }
-  if (!(demonstration.weight > 0.0) || !std::isfinite(demonstration.weight)) return invalid("its weight is not > 0");
-  return std::nullopt;
-}
-
-using Movements = std::vector<const Demonstration*>;  // by id
-
-/// Recordings given twice would be taken for independent ones. Two sources may use the same name.
-std::optional<Failure> repetition(const std::vector<Demonstration>& demonstrations) {
-  std::set<std::pair<std::string, std::string>> seen;
-  for (const Demonstration& demonstration : demonstrations) {
-    const std::string source = label(demonstration, "source");
-    if (seen.insert({source, demonstration.id}).second) continue;
-    return Failure{FailureCode::invalid_input, "recording " + demonstration.id + " is given twice" +
-                                                   (source.empty() ? "" : " (source " + source + ")")};
-  }
-  return std::nullopt;
-}
-
-Result<Movements> sort_and_check(const std::vector<Demonstration>& demonstrations, const AnalysisSettings& settings) {
-  if (const auto found = repetition(demonstrations)) return tl::make_unexpected(*found);
-  Movements movements;
-  for (const Demonstration& demonstration : demonstrations) {
-    if (const auto found = fault(demonstration, demonstrations.front().joint_names)) {
-      return tl::make_unexpected(*found);
-    }
-    if (is_free_motion(demonstration)) continue;
-    if (label(demonstration, settings.group_by).empty()) {
-      return failure(FailureCode::invalid_input,
-                     "recording " + demonstration.id + " has no label '" + settings.group_by + "' to group by");
-    }
-    movements.push_back(&demonstration);
-  }
-  if (movements.empty()) return failure(FailureCode::invalid_input, "no movements to analyze");
-  std::stable_sort(movements.begin(), movements.end(), [](const Demonstration* a, const Demonstration* b) {
-    return std::pair(a->id, label(*a, "source")) < std::pair(b->id, label(*b, "source"));
-  });
-  return movements;
-}
-
-Result<TransitionReport> find_transition(const Demonstration& demonstration, const AnalysisSettings& settings) {
-  const Result<TransitionCurves> curves = transition_curves(demonstration, transition_settings(settings));
-  if (!curves) return tl::make_unexpected(curves.error());
-  TransitionReport report;
-  report.demonstration = demonstration.id;
-  report.likeness = transition(demonstration, *curves, TransitionRule::likeness);
-  report.changepoint = transition(demonstration, *curves, TransitionRule::changepoint);
-  report.dropped_channels = curves->dropped_channels;
-  if (demonstration.known_transition) {
-    const double duration = demonstration.time[demonstration.time.size() - 1] - demonstration.time[0];
-    report.likeness_error = (report.likeness.time_s - *demonstration.known_transition) / duration;
-    report.changepoint_error = (report.changepoint.time_s - *demonstration.known_transition) / duration;
-  }
-  return report;
-}
-
-/// Pre-grasp (or everything) first, then the groups by name. splits: first grasp sample by movement, empty: no split.
-std::vector<Group> form_groups(const std::vector<const Demonstration*>& movements,
-                               const std::map<const Demonstration*, int>& splits, const AnalysisSettings& settings) {
-  const bool split = settings.transition.has_value();
-  Group common{split ? "pre-grasp" : "all", split ? "pre-grasp" : "all", {}};
+/// Pre-grasp (or everything) first, then the groups by name.
+std::vector<Group> form_groups(const std::vector<Movement>& movements, bool split) {
+  Group common;
+  common.name = common.phase = split ? "pre-grasp" : "all";
   std::map<std::string, Group> groups;
-  for (const Demonstration* movement : movements) {
-    const auto samples = static_cast<int>(movement->q_h.rows());
-    const int begin = split ? splits.at(movement) : 0;
-    common.parts.push_back({movement, 0, split ? begin : samples});
-    const std::string name = label(*movement, settings.group_by);
-    Group& group = groups.try_emplace(name, Group{name, split ? "grasp" : "all", {}}).first->second;
-    group.parts.push_back({movement, begin, samples - begin});
+  for (std::size_t i = 0; i < movements.size(); ++i) {
+    common.parts.push_back({i, split, 0, {}, {}});
+    Group& group = groups[movements[i].group];
+    group.name = movements[i].group;
+    group.phase = split ? "grasp" : "all";
+    group.parts.push_back({i, false, 0, {}, {}});
   }
-  std::vector<Group> result{common};
+  std::vector<Group> result = {std::move(common)};
   for (auto& [name, group] : groups) result.push_back(std::move(group));
   return result;
 }
 
 /// One cluster per subject, or per recording when all parts are of one subject.
-std::vector<Cluster> form_clusters(const Group& group, const Eigen::VectorXd& scale, std::string& kind) {
+void form_clusters(Group& group, const std::vector<Movement>& movements) {
   std::set<std::string> subjects;
-  for (const Part& part : group.parts) subjects.insert(label(*part.demonstration, "subject"));
-  kind = subjects.size() > 1 ? "subject" : "recording";
+  for (const Part& part : group.parts) subjects.insert(movements[part.movement].subject);
+  const bool by_subject = subjects.size() > 1;
+  group.report.cluster = by_subject ? "subject" : "recording";
   std::map<std::string, std::size_t> index;
-  std::vector<Cluster> clusters;
-  for (std::size_t i = 0; i < group.parts.size(); ++i) {
-    const Part& part = group.parts[i];
-    const Demonstration& demonstration = *part.demonstration;
-    std::size_t at = clusters.size();
-    if (kind == "subject") at = index.try_emplace(label(demonstration, "subject"), at).first->second;
-    if (at == clusters.size()) clusters.emplace_back();
-    Cluster& cluster = clusters[at];
-    const Eigen::MatrixXd x = demonstration.q_h.middleRows(part.first, part.count) * scale.cwiseInverse().asDiagonal();
-    cluster.statistics = merge(cluster.statistics, moments(x, demonstration.weight));
-    cluster.samples.push_back(x);
-    cluster.weights.push_back(demonstration.weight);
+  std::vector<PairwiseMerge> trees;
+  for (Part& part : group.parts) {
+    const Movement& movement = movements[part.movement];
+    part.cluster = by_subject ? index.try_emplace(movement.subject, trees.size()).first->second : trees.size();
+    if (part.cluster == trees.size()) trees.emplace_back();
+    trees[part.cluster].add(part.before ? movement.before : movement.after);
   }
-  return clusters;
+  for (PairwiseMerge& tree : trees) group.clusters.push_back(std::exchange(tree, {}).result());
+  group.report.clusters = static_cast<int>(group.clusters.size());
 }
 
-struct Learnt {
-  SynergyGroup synergies;
-  GroupReport report;
-};
-
-Result<Learnt> learn(const Group& group, const std::vector<std::string>& joint_names, const Eigen::VectorXd& scale,
-                     const AnalysisSettings& settings) {
-  const auto joints = static_cast<int>(joint_names.size());
-  Learnt learnt;
-  GroupReport& report = learnt.report;
+/// Synergies, box and the intervals of the variance; and what the second pass counts with.
+std::optional<Failure> learn(Group& group, const Movements& found, const AnalysisSettings& settings, int threads) {
+  const auto joints = static_cast<int>(found.joint_names.size());
+  GroupReport& report = group.report;
   report.name = group.name;
   report.phase = group.phase;
   report.recordings = static_cast<int>(group.parts.size());
-  for (const Part& part : group.parts) report.samples += part.count;
+  for (const Part& part : group.parts) {
+    const Movement& movement = found.movements[part.movement];
+    report.samples += part.before ? movement.begin : movement.samples - movement.begin;
+  }
   const std::string title = group.phase == "grasp" ? "group " + group.name : group.phase + " samples of " + group.name;
   if (report.samples <= joints) {
-    return failure(FailureCode::too_few_samples, title + ": " + std::to_string(report.samples) + " samples of " +
+    return Failure{FailureCode::too_few_samples, title + ": " + std::to_string(report.samples) + " samples of " +
                                                      std::to_string(joints) + " joints; more samples than joints are " +
-                                                     "needed");
+                                                     "needed"};
   }
-  const std::vector<Cluster> clusters = form_clusters(group, scale, report.cluster);
-  report.clusters = static_cast<int>(clusters.size());
-  std::vector<SampleStatistics> statistics;
-  for (const Cluster& cluster : clusters) statistics.push_back(cluster.statistics);
-  const SampleStatistics all = pooled(statistics);
-  const Eigen::VectorXd resolution = settings.resolution * scale.cwiseInverse();
+  form_clusters(group, found.movements);
+  const SampleStatistics all = pooled(group.clusters);
+  const Eigen::VectorXd resolution = settings.resolution * found.scale.cwiseInverse();
   const EffectiveSubspace subspace = effective_subspace(all.covariance, resolution);
-  if (subspace.kept.empty()) return failure(FailureCode::degenerate, title + ": no joint moves");
+  if (subspace.kept.empty()) return Failure{FailureCode::degenerate, title + ": no joint moves"};
 
-  SynergyGroup& synergies = learnt.synergies;
+  SynergyGroup& synergies = group.synergies;
   synergies.name = group.name;
   synergies.phase = group.phase;
   synergies.basis = principal_axes(all);
   synergies.dof_effective = subspace.dof();
-  synergies.dropped_channels = names_at(joint_names, subspace.dropped);
+  synergies.dropped_channels = names_at(found.joint_names, subspace.dropped);
   synergies.box =
-      make_box(synergies.basis, scale, settings.alpha, settings.beta, settings.box_root, synergies.dof_effective);
+      make_box(synergies.basis, found.scale, settings.alpha, settings.beta, settings.box_root, synergies.dof_effective);
   report.k = static_cast<int>(synergies.box.axes.cols());
   report.cumulative_variance = cumulative_variance(synergies.basis.variance);
-
-  const std::string purpose = group.phase + "/" + group.name;
-  if (clusters.size() > 1) {
-    Rng variance_rng = stream(settings.seed, "bootstrap/variance/" + purpose);
-    report.intervals =
-        cumulative_variance_intervals(statistics, settings.replicates, settings.confidence, variance_rng);
+  group.coverage = {settings.alpha, settings.beta,       settings.box_root,
+                    resolution,     settings.replicates, settings.confidence};
+  group.all = make_walls(all, group.coverage);
+  if (group.clusters.size() > 1) {
+    Rng rng = stream(settings.seed, "bootstrap/variance/" + group.phase + "/" + group.name);
+    report.intervals = cumulative_variance_intervals(group.clusters, settings.replicates, settings.confidence, rng);
+    group.others = held_out_walls(group.clusters, group.coverage, threads);
   }
-  Rng coverage_rng = stream(settings.seed, "bootstrap/coverage/" + purpose);
-  report.coverage = box_coverage(
-      clusters,
-      {settings.alpha, settings.beta, settings.box_root, resolution, settings.replicates, settings.confidence},
-      coverage_rng);
-  return learnt;
+  group.clusters = {};
+  return std::nullopt;
+}
+
+/// The second pass: what of each part lies inside the box of all and inside that of the other clusters.
+void count_coverage(std::vector<Group>& groups, const Movements& found, const RecordingSource& source,
+                    const Reading& reading) {
+  std::vector<std::size_t> order(found.movements.size());  // movements in the order of the source
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return found.movements[a].index < found.movements[b].index; });
+  std::vector<std::size_t> indices;
+  for (const std::size_t movement : order) indices.push_back(found.movements[movement].index);
+  std::vector<std::vector<std::pair<Group*, Part*>>> parts(order.size());  // by movement
+  for (Group& group : groups) {
+    for (Part& part : group.parts) parts[part.movement].emplace_back(&group, &part);
+  }
+  const Eigen::VectorXd inverse = found.scale.cwiseInverse();
+  for_each_recording(source, indices, reading, [&](std::size_t place, const Demonstration& recording) {
+    const Movement& movement = found.movements[order[place]];
+    require(recording.id == movement.id && recording.q_h.rows() == movement.samples,
+            "analyze: recording " + movement.id + " is another one in the second pass");
+    const Eigen::MatrixXd x = recording.q_h * inverse.asDiagonal();
+    for (const auto& [group, part] : parts[order[place]]) {
+      const auto rows = part->before ? x.topRows(movement.begin) : x.bottomRows(movement.samples - movement.begin);
+      part->in_sample = count_inside(group->all, rows, movement.weight);
+      if (!group->others.empty()) {
+        part->held_out = count_inside(group->others[part->cluster], rows, movement.weight);
+      }
+    }
+    return true;
+  });
+}
+
+void report_coverage(Group& group, const AnalysisSettings& settings) {
+  std::vector<Tally> in_sample(static_cast<std::size_t>(group.report.clusters));
+  std::vector<Tally> held_out(group.others.size());
+  for (const Part& part : group.parts) {
+    add(in_sample[part.cluster], part.in_sample);
+    if (!held_out.empty()) add(held_out[part.cluster], part.held_out);
+  }
+  Rng rng = stream(settings.seed, "bootstrap/coverage/" + group.phase + "/" + group.name);
+  group.report.coverage = coverage_of(group.all, in_sample, held_out, group.coverage, rng);
 }
 
 }  // namespace
@@ -227,45 +189,42 @@ TransitionSettings transition_settings(const AnalysisSettings& settings) {
   return {settings.resolution, settings.min_window, settings.normaliser};
 }
 
-Result<Analysis> analyze(const std::vector<Demonstration>& demonstrations, const AnalysisSettings& settings) {
+Result<Analysis> analyze(const RecordingSource& source, const AnalysisSettings& settings, const Reading& reading) {
   validate(settings);
-  if (demonstrations.empty()) return failure(FailureCode::invalid_input, "no recordings to analyze");
-  const Result<Movements> movements = sort_and_check(demonstrations, settings);
-  if (!movements) return tl::make_unexpected(movements.error());
-  Analysis analysis;
-  analysis.synergies.joint_names = demonstrations.front().joint_names;
-  const auto joints = static_cast<Eigen::Index>(analysis.synergies.joint_names.size());
-  Eigen::VectorXd scale = Eigen::VectorXd::Ones(joints);
-  if (settings.normalize_by) {
-    require(settings.normalize_by->lower.size() == joints, "analyze: normalize_by needs one range per joint");
-    scale = settings.normalize_by->upper - settings.normalize_by->lower;
+  if (source.count == 0) return failure(FailureCode::invalid_input, "no recordings to analyze");
+  const Reading first{reading.threads, [&](std::size_t done, std::size_t total) {
+                        if (reading.progress) reading.progress(done, 2 * total);
+                      }};
+  Result<Movements> found = read_movements(source, settings, first);
+  if (!found) return tl::make_unexpected(found.error());
+  std::vector<Group> groups = form_groups(found->movements, settings.transition.has_value());
+  for (Group& group : groups) {
+    if (const auto failed = learn(group, *found, settings, reading.threads)) return tl::make_unexpected(*failed);
   }
+  for (Movement& movement : found->movements) movement.before = movement.after = {};
+  const Reading second{reading.threads, [&](std::size_t done, std::size_t total) {
+                         if (reading.progress) reading.progress(total + done, 2 * total);
+                       }};
+  count_coverage(groups, *found, source, second);
 
-  std::map<const Demonstration*, int> splits;
-  if (settings.transition) {
-    for (const Demonstration& demonstration : demonstrations) {
-      if (is_free_motion(demonstration)) continue;
-      const Result<TransitionReport> found = find_transition(demonstration, settings);
-      if (!found) return tl::make_unexpected(found.error());
-      splits[&demonstration] =
-          *settings.transition == TransitionRule::likeness ? found->likeness.index : found->changepoint.index;
-      analysis.transitions.push_back(*found);
-    }
-  }
-  for (const Group& group : form_groups(*movements, splits, settings)) {
-    Result<Learnt> learnt = learn(group, analysis.synergies.joint_names, scale, settings);
-    if (!learnt) return tl::make_unexpected(learnt.error());
+  Analysis analysis;
+  analysis.synergies.joint_names = found->joint_names;
+  for (Group& group : groups) {
+    report_coverage(group, settings);
     if (analysis.groups.empty()) {
-      analysis.synergies.pre_grasp = std::move(learnt->synergies);
+      analysis.synergies.pre_grasp = std::move(group.synergies);
     } else {
-      analysis.synergies.grasp.push_back(std::move(learnt->synergies));
+      analysis.synergies.grasp.push_back(std::move(group.synergies));
     }
-    analysis.groups.push_back(std::move(learnt->report));
+    analysis.groups.push_back(std::move(group.report));
   }
-  std::vector<const Demonstration*> all;
-  for (const Demonstration& demonstration : demonstrations) all.push_back(&demonstration);
-  analysis.free_motion = free_motion_reference(std::move(all));
+  analysis.transitions = std::move(found->transitions);
+  analysis.free_motion = free_motion_reference(std::move(found->free_motions));
   return analysis;
+}
+
+Result<Analysis> analyze(const std::vector<Demonstration>& demonstrations, const AnalysisSettings& settings) {
+  return analyze(source_of(demonstrations), settings, Reading{});
 }
 
 }  // namespace opponens::analysis

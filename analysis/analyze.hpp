@@ -13,6 +13,7 @@
 #include "analysis/human_likeness.hpp"
 #include "analysis/intervals.hpp"
 #include "analysis/phase_transition.hpp"
+#include "analysis/recording_source.hpp"
 #include "analysis/synergy_box.hpp"
 #include "core/demonstration.hpp"
 #include "core/result.hpp"
@@ -83,6 +84,13 @@ struct Analysis {
 /// Failure, with a sentence naming the recording or group: invalid_input (no movements, a recording given twice, joints
 /// that differ, a label absent, samples not finite, time that does not increase), too_few_samples (a recording too
 /// short to split; a group with no more samples than joints), degenerate (nothing moves).
+///
+/// Every recording is read twice: for its transition and moments, then for the coverage of boxes that were learnt from
+/// the others. Two batches of recordings are in memory at a time; of each movement about 10 n^2 numbers stay. The
+/// result does not depend on the number of threads. reading.progress may throw to end it.
+Result<Analysis> analyze(const RecordingSource& source, const AnalysisSettings& settings, const Reading& reading);
+
+/// The same of recordings in memory, on one thread.
 Result<Analysis> analyze(const std::vector<Demonstration>& demonstrations, const AnalysisSettings& settings);
 
 }  // namespace opponens::analysis

@@ -42,10 +42,42 @@ struct CoverageSettings {
   double confidence = 0.95;    ///< of the interval
 };
 
+/// What counts as inside: all n axes of one basis, and how far along each.
+struct Walls {
+  Eigen::VectorXd mean;   ///< [n]
+  Eigen::MatrixXd axes;   ///< [n x n] orthonormal columns
+  Eigen::VectorXd reach;  ///< [n] max(half width, tolerance)
+  int k = 1;
+  int dof_effective = 1;
+};
+
+/// Sums of weights of samples.
+struct Tally {
+  double total = 0.0;
+  double full = 0.0;  ///< inside along all axes
+  double kept = 0.0;  ///< inside along the first k
+};
+
+void add(Tally& sum, const Tally& part);
+
+Walls make_walls(const SampleStatistics& statistics, const CoverageSettings& settings);
+
+/// For each of at least two clusters the walls of all others, merged in a fixed tree: O(c (log c n^2 + n^3)) on the
+/// given number of threads, on which the result does not depend.
+std::vector<Walls> held_out_walls(const std::vector<SampleStatistics>& clusters, const CoverageSettings& settings,
+                                  int threads);
+
+/// x: [T x n] scaled, row = sample, each of the given weight.
+Tally count_inside(const Walls& walls, const Eigen::Ref<const Eigen::MatrixXd>& x, double weight);
+
+/// Coverage from counts per cluster. held_out: empty with a single cluster. all: the walls of all samples.
+BoxCoverage coverage_of(const Walls& all, const std::vector<Tally>& in_sample, const std::vector<Tally>& held_out,
+                        const CoverageSettings& settings, Rng& rng);
+
 /// Coverage in sample and held out. A coordinate counts as inside axis u when |y| <= max(half width, tolerance) with
 /// tolerance = sqrt(sum_j u_j^2 r_j^2), one sensor resolution along the axis: an axis of zero width would otherwise
 /// exclude every sample for its rounding. Held out: mean, axes, k, effective dof and widths are those of the other
-/// clusters. Cost O(samples n^2 + clusters (clusters n^2 + n^3)).
+/// clusters. Cost O(samples n^2 + clusters (log clusters n^2 + n^3)).
 BoxCoverage box_coverage(const std::vector<Cluster>& clusters, const CoverageSettings& settings, Rng& rng);
 
 }  // namespace opponens::analysis

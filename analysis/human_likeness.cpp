@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <Eigen/Eigenvalues>
 
@@ -17,19 +18,29 @@ bool is_free_motion(const Demonstration& recording) {
   return kind != recording.labels.end() && kind->second == "free";
 }
 
-std::optional<LikenessReference> free_motion_reference(std::vector<const Demonstration*> recordings) {
-  std::erase_if(recordings, [](const Demonstration* recording) { return !is_free_motion(*recording); });
-  if (recordings.empty()) return std::nullopt;
-  std::stable_sort(recordings.begin(), recordings.end(),
-                   [](const Demonstration* a, const Demonstration* b) { return a->id < b->id; });
-  std::vector<SampleStatistics> parts;
+FreeMotion free_motion(const Demonstration& recording) {
+  return {recording.id, recording.origin == Origin::simulated, moments(recording.q_h, recording.weight)};
+}
+
+std::optional<LikenessReference> free_motion_reference(std::vector<FreeMotion> motions) {
+  if (motions.empty()) return std::nullopt;
+  std::stable_sort(motions.begin(), motions.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
+  PairwiseMerge all;
   bool simulated = false;
-  for (const Demonstration* recording : recordings) {
-    parts.push_back(moments(recording->q_h, recording->weight));
-    simulated = simulated || recording->origin == Origin::simulated;
+  for (FreeMotion& motion : motions) {
+    all.add(std::move(motion.statistics));
+    simulated = simulated || motion.simulated;
   }
   return LikenessReference{simulated ? "free finger motions (simulated)" : "free finger motions",
-                           pooled(parts).covariance};
+                           all.result().covariance};
+}
+
+std::optional<LikenessReference> free_motion_reference(const std::vector<const Demonstration*>& recordings) {
+  std::vector<FreeMotion> motions;
+  for (const Demonstration* recording : recordings) {
+    if (is_free_motion(*recording)) motions.push_back(free_motion(*recording));
+  }
+  return free_motion_reference(std::move(motions));
 }
 
 std::optional<double> human_likeness(const Eigen::Ref<const Eigen::MatrixXd>& q_h, const LikenessReference& reference) {

@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include "core/demonstration.hpp"
+#include "core/synergies.hpp"
 
 namespace opponens::analysis {
 
@@ -21,9 +22,20 @@ struct LikenessReference {
 /// Whether a recording is of free finger motions (label kind = "free") and not of a movement to a grasp.
 bool is_free_motion(const Demonstration& recording);
 
+/// What the reference needs of one free motion.
+struct FreeMotion {
+  std::string id;
+  bool simulated = false;
+  SampleStatistics statistics;  ///< rad
+};
+FreeMotion free_motion(const Demonstration& recording);
+
+/// The reference that free motions give; nullopt when there are none. Does not depend on their order.
+std::optional<LikenessReference> free_motion_reference(std::vector<FreeMotion> motions);
+
 /// The reference that the free motions among the recordings give, pooled by their weights; nullopt when there are none.
 /// Does not depend on the order. All recordings have the same joints.
-std::optional<LikenessReference> free_motion_reference(std::vector<const Demonstration*> recordings);
+std::optional<LikenessReference> free_motion_reference(const std::vector<const Demonstration*>& recordings);
 
 /// Human-likeness of a hand path, in (0, 100]. The formula behind the paper's Table 2 is unpublished; this one is ours
 /// (docs/deviations.md, 7).

@@ -26,6 +26,30 @@ double logistic(double x) { return 1.0 / (1.0 + std::exp(-x)); }
 
 double exponential(Rng& rng) { return -std::log1p(-rng.uniform()); }
 
+/// Sums over each cluster's samples about a common centre, one column per cluster: weight, x, then the columns of x x'.
+/// They add up over clusters, so a resample costs one multiplication and addition per number and drawn cluster.
+Eigen::MatrixXd totals_about(const Eigen::VectorXd& centre, const std::vector<SampleStatistics>& clusters) {
+  const Eigen::Index n = centre.size();
+  Eigen::MatrixXd totals(1 + n + n * n, static_cast<Eigen::Index>(clusters.size()));
+  for (Eigen::Index c = 0; c < totals.cols(); ++c) {
+    const SampleStatistics& cluster = clusters[static_cast<std::size_t>(c)];
+    const Eigen::VectorXd d = cluster.mean - centre;
+    totals(0, c) = cluster.count;
+    totals.col(c).segment(1, n) = cluster.count * d;
+    totals.col(c).tail(n * n).reshaped(n, n) = cluster.count * (cluster.covariance + d * d.transpose());
+  }
+  return totals;
+}
+
+/// The moments that such sums belong to; the mean is relative to the centre.
+SampleStatistics statistics_of(const Eigen::VectorXd& totals, Eigen::Index n) {
+  SampleStatistics result;
+  result.count = totals[0];
+  result.mean = totals.segment(1, n) / result.count;
+  result.covariance = totals.tail(n * n).reshaped(n, n) / result.count - result.mean * result.mean.transpose();
+  return result;
+}
+
 void check(double confidence, std::size_t replicates) {
   require(confidence > 0.0 && confidence < 1.0, "interval: confidence must be in (0, 1)");
   require(replicates >= 2, "interval: at least 2 bootstrap replicates");
@@ -75,18 +99,16 @@ Interval basic_logit_interval(double estimate, std::vector<double> replicates, d
 Eigen::MatrixXd bootstrap_cumulative_variance(const std::vector<SampleStatistics>& clusters, int replicates, Rng& rng) {
   require(replicates >= 2, "bootstrap: at least 2 replicates");
   require(clusters.size() >= 2, "bootstrap: at least 2 clusters");
-  Eigen::MatrixXd shares(replicates, clusters.front().mean.size());
+  const Eigen::Index n = clusters.front().mean.size();
+  const Eigen::MatrixXd totals = totals_about(pooled(clusters).mean, clusters);
+  Eigen::MatrixXd shares(replicates, n);
   for (int replicate = 0; replicate < replicates; ++replicate) {
     const Eigen::VectorXi counts = resample_counts(static_cast<int>(clusters.size()), rng);
-    SampleStatistics drawn;
-    for (std::size_t c = 0; c < clusters.size(); ++c) {
-      const int times = counts[static_cast<Eigen::Index>(c)];
-      if (times == 0) continue;
-      SampleStatistics repeated = clusters[c];
-      repeated.count *= times;
-      drawn = merge(drawn, repeated);
+    Eigen::VectorXd drawn = Eigen::VectorXd::Zero(totals.rows());
+    for (Eigen::Index c = 0; c < counts.size(); ++c) {
+      if (counts[c] != 0) drawn += static_cast<double>(counts[c]) * totals.col(c);
     }
-    shares.row(replicate) = cumulative_variance(principal_axes(drawn).variance).transpose();
+    shares.row(replicate) = cumulative_variance(principal_axes(statistics_of(drawn, n)).variance).transpose();
   }
   return shares;
 }

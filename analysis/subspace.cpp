@@ -12,6 +12,8 @@ namespace {
 
 constexpr double kRoundingShare = 1e-12;
 constexpr double kConstantShare = 1e-20;
+constexpr double kClearlyMore =
+    1.0 + 1e-9;  // less is a tie, which rounding must not decide: the first channel is taken
 
 }  // namespace
 
@@ -32,7 +34,7 @@ EffectiveSubspace effective_subspace(const Eigen::Ref<const Eigen::MatrixXd>& co
     int pivot = -1;
     for (int j = 0; j < n; ++j) {
       if (taken[static_cast<std::size_t>(j)] || remaining[j] <= floor[j]) continue;
-      if (pivot < 0 || remaining[j] * floor[pivot] > remaining[pivot] * floor[j]) pivot = j;
+      if (pivot < 0 || remaining[j] * floor[pivot] > kClearlyMore * remaining[pivot] * floor[j]) pivot = j;
     }
     if (pivot < 0) break;
     const auto step = static_cast<Eigen::Index>(result.kept.size());

@@ -68,7 +68,7 @@ void declare_simulate(CLI::App& app, SimulateOptions& options) {
 void declare_ingest(CLI::App& app, IngestOptions& options) {
   app.add_option("PATH", options.paths, "Recordings, or the folder that holds them")->required();
   add_store(app, options.common);
-  app.add_option("--source", options.source, "YAML that describes the recordings (docs/ingest.md)")->required();
+  app.add_option("--source", options.source, "YAML that describes the recordings (docs/ingest.md)");
   app.add_flag("--dry-run", options.dry_run, "Say what would be stored; store nothing");
 }
 
@@ -113,6 +113,13 @@ void declare_analyze(CLI::App& app, AnalyzeOptions& options) {
   app.add_option("--input", options.input,
                  "Which motions: hand (retargeted) or glove; default: hand when there are any")
       ->check(CLI::IsMember({"hand", "glove"}));
+}
+
+void declare_compare(CLI::App& app, CompareOptions& options) {
+  app.add_option("ID", options.ids, "Two synergy sets, or the beginnings of their ids; default: the newest")
+      ->expected(0, 2);
+  add_store(app, options.common);
+  app.add_option("--with", options.with, "Store of the second set; default: the same store");
 }
 
 void declare_grasp(CLI::App& app, GraspOptions& options) {
@@ -162,6 +169,38 @@ void declare_show(CLI::App& app, ShowOptions& options) {
   add_store(app, options.common);
 }
 
+void declare_export(CLI::App& app, ExportOptions& options) {
+  app.add_option("ID", options.ids, "Objects, by id or the beginning of one; default: all");
+  add_store(app, options.common);
+  app.add_option("--kind", options.kind, "Only objects of this kind (opponens show lists them)");
+  app.add_option("--single-file", options.single_file,
+                 "HDF5 file to write: the objects and all they were made from; opponens ingest takes it back");
+  app.add_option("--format", options.format, "Form of the objects alone")
+      ->check(CLI::IsMember({"csv", "json", "robomimic"}));
+  app.add_option("--out", options.out, "File to write with --format; of csv: the folder");
+}
+
+/// The commands that look after a store.
+void add_store_commands(Builder& add) {
+  add.command<ExportOptions>("export", "Write objects to one file, or in the form of other programs", export_objects,
+                             declare_export);
+  add.command<MergeOptions>("merge", "Copy what other stores hold into one", merge,
+                            [](CLI::App& app, MergeOptions& options) {
+                              app.add_option("STORE", options.stores, "Stores to copy from")->required();
+                              add_store(app, options.common);
+                            });
+  add.command<RepairOptions>("repair", "List what is damaged and set it aside", repair,
+                             [](CLI::App& app, RepairOptions& options) {
+                               add_store(app, options.common);
+                               app.add_flag("--dry-run", options.dry_run, "Only list");
+                             });
+  add.command<StaleOptions>(
+      "stale", "List what upstream changes made old", stale, [](CLI::App& app, StaleOptions& options) {
+        add_store(app, options.common);
+        app.add_option("--files", options.files, "Folders that hold the outside files recorded by name alone");
+      });
+}
+
 void add_commands(Builder& add) {
   add.command<DemoOptions>(
       "demo", "The whole flow on built-in simulated demonstrations", demo, [](CLI::App& app, DemoOptions& options) {
@@ -173,6 +212,8 @@ void add_commands(Builder& add) {
   add.command<IngestOptions>("ingest", "Read recordings into a store", ingest, declare_ingest);
   add.command<RetargetOptions>("retarget", "Map glove recordings to a robot hand", retarget, declare_retarget);
   add.command<AnalyzeOptions>("analyze", "Phases, synergies and boxes", analyze, declare_analyze);
+  add.command<CompareOptions>("compare", "Distance and principal angles between two synergy sets", compare,
+                              declare_compare);
   add.command<GraspOptions>("grasp", "Search force-closure grasps along the synergies", grasp, declare_grasp);
   add.command<PlanOptions>("plan", "Plan a hand-arm path to one of the grasps", plan, declare_plan);
   add.command<VerifyOptions>("verify", "Check grasps and paths again by code of its own, all else by hash", verify,
@@ -182,12 +223,17 @@ void add_commands(Builder& add) {
                                add_store(app, options.common);
                                app.add_option("--out", options.out, "File to write")->capture_default_str();
                              });
-  add.command<ShowOptions>("show", "List a store, or print one object of it", show, declare_show);
+  add.command<ShowOptions>("show", "List a store, or print one object of it", show,
+                           [](CLI::App& app, ShowOptions& options) {
+                             declare_show(app, options);
+                             app.add_option("--kind", options.kind, "List objects of this kind only");
+                           });
   add.command<ShowOptions>("why", "Print what an object was made from, back to the recordings", why,
                            [](CLI::App& app, ShowOptions& options) {
                              declare_show(app, options);
                              app.get_option("ID")->required();
                            });
+  add_store_commands(add);
 }
 
 /// The first argument when it stands for a command and is none. CLI11 would only say that a subcommand is required, or

@@ -53,6 +53,11 @@ struct AnalyzeOptions {
   std::string phase = "both";  ///< both | none
   std::string input{};         ///< hand | glove; empty: hand when there is any
 };
+struct CompareOptions {
+  Common common{};
+  std::vector<std::string> ids{};  ///< two synergy sets; left out: the newest
+  std::filesystem::path with{};    ///< store of the second; empty: the same store
+};
 struct GraspOptions {
   Common common{};
   std::string robot = "models/ur5_allegro/ur5_allegro_right.yaml";
@@ -84,7 +89,28 @@ struct ReportOptions {
 };
 struct ShowOptions {
   Common common{};
-  std::string id{};  ///< empty: list everything
+  std::string id{};    ///< empty: list everything
+  std::string kind{};  ///< list this kind only
+};
+struct ExportOptions {
+  Common common{};
+  std::vector<std::string> ids{};  ///< empty: all
+  std::string kind{};              ///< only this kind
+  std::filesystem::path single_file{};
+  std::string format{};
+  std::filesystem::path out{};
+};
+struct MergeOptions {
+  Common common{};
+  std::vector<std::filesystem::path> stores{};
+};
+struct RepairOptions {
+  Common common{};
+  bool dry_run = false;
+};
+struct StaleOptions {
+  Common common{};
+  std::vector<std::filesystem::path> files{};  ///< folders with outside files
 };
 struct DemoOptions {
   std::filesystem::path out = "demo";
@@ -95,14 +121,20 @@ struct DemoOptions {
 // Each runs one command and returns its exit code; errors are exceptions (see main.cpp).
 int simulate(const SimulateOptions& options, const Console& console);
 int ingest(const IngestOptions& options, const Console& console);
+int ingest_single_files(const IngestOptions& options, const Console& console);  ///< ingest without a source YAML
 int retarget(const RetargetOptions& options, const Console& console);
 int analyze(const AnalyzeOptions& options, const Console& console);
+int compare(const CompareOptions& options, const Console& console);
 int grasp(const GraspOptions& options, const Console& console);
 int plan(const PlanOptions& options, const Console& console);
 int verify(const VerifyOptions& options, const Console& console);
 int report(const ReportOptions& options, const Console& console);
 int show(const ShowOptions& options, const Console& console);
 int why(const ShowOptions& options, const Console& console);
+int export_objects(const ExportOptions& options, const Console& console);
+int merge(const MergeOptions& options, const Console& console);
+int repair(const RepairOptions& options, const Console& console);
+int stale(const StaleOptions& options, const Console& console);
 int demo(const DemoOptions& options, const Console& console);
 
 }  // namespace opponens::cli

@@ -1,90 +1,85 @@
 // SPDX-FileCopyrightText: 2026 The opponens authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include <set>
+#include <algorithm>
+#include <unordered_map>
+#include <unordered_set>
 
 #include "cli/commands.hpp"
 #include "cli/json.hpp"
+#include "cli/records.hpp"
 #include "cli/stored.hpp"
+#include "storage/single_file.hpp"
 
 namespace opponens::cli {
 namespace {
 
-constexpr std::size_t kShort = 12;  // digits of an id for a person
-
-Json field_json(const storage::Field& field) {
-  return std::visit(
-      [](const auto& value) -> Json {
-        using T = std::decay_t<decltype(value)>;
-        if constexpr (std::is_same_v<T, Eigen::VectorXd>) {
-          return array(value);
-        } else if constexpr (std::is_same_v<T, Eigen::MatrixXd>) {
-          return rows(value);
-        } else if constexpr (std::is_same_v<T, double>) {
-          return number(value);
-        } else {
-          return value;
-        }
-      },
-      field);
-}
-
-Json record_json(const std::string& id, const storage::Record& record) {
-  Json fields = Json::object();
-  for (const auto& [name, field] : record.fields) fields[name] = field_json(field);
-  const auto& origin = record.provenance;
-  return {{"id", id},
-          {"kind", record.kind},
-          {"name", record.name},
-          {"provenance",
-           {{"command", origin.command},
-            {"inputs", origin.inputs},
-            {"files", origin.files},
-            {"parameters", parameters_of(record)},
-            {"seed", origin.seed},
-            {"program_version", origin.program_version}}},
-          {"fields", fields}};
-}
-
-std::string line_of(const storage::Record& record, const std::string& id) {
-  return id.substr(0, kShort) + "  " + record.kind + "  " + record.name + "  (" + record.provenance.command + " " +
-         record.provenance.parameters + ", seed " + std::to_string(record.provenance.seed) + ")";
-}
-
-int list_store(const storage::Store& store, const Console& console) {
+int list_store(const storage::Store& store, const std::string& kind, const Console& console) {
   Json objects = Json::array();
-  for (const auto& entry : store.list()) {
-    console.say(entry.id.substr(0, kShort) + "  " + entry.kind + "  " + entry.name);
-    objects.push_back({{"id", entry.id}, {"kind", entry.kind}, {"name", entry.name}, {"file", entry.file}});
+  for (const auto& entry : store.list(kind)) {
+    console.say(short_id(entry.id) + "  " + entry.kind + "  " + entry.name);
+    if (!console.json()) continue;
+    Json object = entry_json(entry);
+    object["file"] = entry.file;
+    objects.push_back(std::move(object));
   }
   Json result = document("show");
-  result["objects"] = objects;
+  result["objects"] = std::move(objects);
   console.document(result.dump());
   return kDone;
 }
 
-/// Prints the chain depth first, each object once; many inputs of one kind are counted after the first.
-void print_chain(const storage::Store& store, const std::string& id, int depth, std::set<std::string>& seen,
-                 const Console& console, Json& chain) {
-  if (!seen.insert(id).second) return;
-  const auto record = store.read(id);
-  console.say(std::string(static_cast<std::size_t>(2 * depth), ' ') + line_of(record, id));
-  chain.push_back({{"id", id},
-                   {"kind", record.kind},
-                   {"name", record.name},
-                   {"command", record.provenance.command},
-                   {"depth", depth},
-                   {"inputs", record.provenance.inputs}});
-  for (const auto& input : record.provenance.inputs) print_chain(store, input, depth + 1, seen, console, chain);
+struct Step {
+  std::string id;
+  int depth = 0;
+};
+
+/// Depth first, each object once. By the index alone: the objects are read afterwards, in the order of the files.
+std::vector<Step> chain_order(const std::unordered_map<std::string, const storage::IndexEntry*>& entries,
+                              const std::string& id) {
+  std::vector<Step> order;
+  std::vector<Step> open{{id, 0}};
+  std::unordered_set<std::string> seen;
+  while (!open.empty()) {
+    const Step step = std::move(open.back());
+    open.pop_back();
+    if (!seen.insert(step.id).second) continue;
+    order.push_back(step);
+    const auto found = entries.find(step.id);
+    if (found == entries.end()) continue;
+    const auto& inputs = found->second->inputs;
+    for (auto input = inputs.rbegin(); input != inputs.rend(); ++input) open.push_back({*input, step.depth + 1});
+  }
+  return order;
+}
+
+struct Line {
+  std::string text;
+  Json json;
+};
+
+Line line_of(const std::string& id, const storage::Record& record) {
+  const auto& origin = record.provenance;
+  return {short_id(id) + "  " + record.kind + "  " + record.name + "  (" + origin.command + " " + origin.parameters +
+              ", seed " + std::to_string(origin.seed) + ")",
+          {{"id", id},
+           {"kind", record.kind},
+           {"name", record.name},
+           {"command", origin.command},
+           {"inputs", origin.inputs},
+           {"files", origin.files}}};
 }
 
 }  // namespace
 
 int show(const ShowOptions& options, const Console& console) {
   const storage::Store store(options.common.store, false);
-  if (options.id.empty()) return list_store(store, console);
-  const auto record = store.read(options.id);
-  const std::string id = storage::content_hash(record);
-  console.say(record_json(id, record).dump(2));
+  if (options.id.empty()) return list_store(store, options.kind, console);
+  const std::string id = store.find(options.id).id;
+  const auto record = store.read(id);
+  if (!console.json()) {
+    for (const auto& line : record_lines(id, record)) console.say(line);
+    return kDone;
+  }
   Json result = document("show");
   result["object"] = record_json(id, record);
   console.document(result.dump());
@@ -93,12 +88,29 @@ int show(const ShowOptions& options, const Console& console) {
 
 int why(const ShowOptions& options, const Console& console) {
   const storage::Store store(options.common.store, false);
-  const std::string id = storage::content_hash(store.read(options.id));
-  std::set<std::string> seen;
+  const std::string id = store.find(options.id).id;
+  const std::vector<storage::IndexEntry> all = store.list();
+  std::unordered_map<std::string, const storage::IndexEntry*> entries;
+  for (const auto& entry : all) entries.emplace(entry.id, &entry);
+  const std::vector<Step> order = chain_order(entries, id);
+  std::unordered_set<std::string> wanted;
+  for (const auto& step : order) wanted.insert(step.id);
+  std::unordered_map<std::string, Line> lines;
+  for (const auto& entry : all) {
+    if (wanted.contains(entry.id)) lines.emplace(entry.id, line_of(entry.id, store.read(entry.id)));
+  }
   Json chain = Json::array();
-  print_chain(store, id, 0, seen, console, chain);
+  for (const auto& step : order) {
+    const auto line = lines.find(step.id);
+    const bool missing = line == lines.end();
+    console.say(std::string(static_cast<std::size_t>(2 * step.depth), ' ') +
+                (missing ? short_id(step.id) + "  is not in the store" : line->second.text));
+    Json link = missing ? Json{{"id", step.id}, {"kind", nullptr}} : std::move(line->second.json);
+    link["depth"] = step.depth;
+    chain.push_back(std::move(link));
+  }
   Json result = document("why");
-  result["chain"] = chain;
+  result["chain"] = std::move(chain);
   console.document(result.dump());
   return kDone;
 }

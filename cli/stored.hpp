@@ -23,6 +23,7 @@ namespace opponens::cli {
 inline constexpr const char* kRecording = "demonstration";        ///< a glove recording
 inline constexpr const char* kHandMotion = "hand_demonstration";  ///< the same, mapped to a robot hand
 inline constexpr const char* kSynergySet = "synergy_set";
+inline constexpr const char* kFirstOrderSynergies = "first_order_synergies";  ///< of joint velocities
 inline constexpr const char* kGrasp = "grasp";
 inline constexpr const char* kGraspSearch = "grasp_search";  ///< trials and rejections of one group's search
 inline constexpr const char* kPath = "path";

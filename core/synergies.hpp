@@ -49,6 +49,7 @@ struct SynergySet {
   std::vector<std::string> joint_names;  ///< [n]
   SynergyGroup pre_grasp;
   std::vector<SynergyGroup> grasp;  ///< one per group, sorted by name
+  int order = 0;  ///< 0: of joint positions; 1: first-order synergies, of joint velocities (per second)
 };
 
 }  // namespace opponens

@@ -7,11 +7,16 @@
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
+# Off a terminal the log is for what failed: a few lines per passed test would bury it.
+without_passed() {
+  if [ -t 1 ]; then cat; else grep --line-buffered -vE '^ *Start +[0-9]+:|   Passed +[0-9.]+ sec$'; fi
+}
+
 run_tests() {  # PRESET ctest-options...
   local preset="$1"
   shift
   say "Testing ($preset)"
-  (cd "$ROOT/build/$preset" && ctest --output-on-failure --no-tests=error -j "$(nproc)" "$@")
+  (cd "$ROOT/build/$preset" && ctest --output-on-failure --no-tests=error -j "$(nproc)" "$@") | without_passed
 }
 
 part="${1:-all}"

@@ -13,6 +13,8 @@
 namespace opponens::storage {
 namespace {
 
+constexpr const char* kFirstOrder = "first_order_synergies";
+
 constexpr std::string_view kLabel = "label.";
 constexpr std::array<std::string_view, 2> kOrigins{"recorded", "simulated"};
 
@@ -104,7 +106,8 @@ Demonstration decode_demonstration(const Record& record) {
 }
 
 Record encode(const SynergySet& set, const Provenance& provenance) {
-  Record record{"synergy_set", "synergies", provenance, {}};
+  require(set.order == 0 || set.order == 1, "encode: the order of a synergy set is 0 or 1");
+  Record record{set.order == 0 ? "synergy_set" : kFirstOrder, "synergies", provenance, {}};
   record.fields["joint_names"] = set.joint_names;
   record.fields["grasp_count"] = static_cast<std::int64_t>(set.grasp.size());
   encode_group(record, "pre_grasp.", set.pre_grasp);
@@ -115,8 +118,10 @@ Record encode(const SynergySet& set, const Provenance& provenance) {
 }
 
 SynergySet decode_synergy_set(const Record& record) {
-  const FieldReader read(record, "synergy_set");
+  // Synergies of velocities have a kind of their own, so that nobody takes them for postures.
+  const FieldReader read(record, record.kind == kFirstOrder ? kFirstOrder : "synergy_set");
   SynergySet set;
+  set.order = record.kind == kFirstOrder ? 1 : 0;
   set.joint_names = read.texts("joint_names");
   set.pre_grasp = decode_group(read, "pre_grasp.");
   const int count = read.small_integer("grasp_count");

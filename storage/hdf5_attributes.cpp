@@ -10,9 +10,8 @@ namespace opponens::storage::hdf5 {
 namespace {
 
 void write_raw_attribute(const Handle& object, const std::string& name, hid_t type, const void* data) {
-  const Handle creation = properties(H5P_ATTRIBUTE_CREATE);
-  checked(H5Pset_char_encoding(creation.id(), H5T_CSET_UTF8), -1, "", "choose UTF-8 names");
-  const Handle space(checked(H5Screate(H5S_SCALAR), -1, "", "make a dataspace"), H5Sclose);
+  static const Handle creation = utf8_names(H5P_ATTRIBUTE_CREATE);
+  static const Handle space(checked(H5Screate(H5S_SCALAR), -1, "", "make a dataspace"), H5Sclose);
   const Handle attribute(checked(H5Acreate2(object.id(), name.c_str(), type, space.id(), creation.id(), H5P_DEFAULT),
                                  object.id(), name, "create the attribute"),
                          H5Aclose);
@@ -61,7 +60,8 @@ void write_attribute(const Handle& object, const std::string& name, std::uint64_
 }
 void write_attribute(const Handle& object, const std::string& name, const std::string& value) {
   const char* text = value.c_str();
-  write_raw_attribute(object, name, string_type().id(), static_cast<const void*>(&text));
+  static const Handle type = string_type();
+  write_raw_attribute(object, name, type.id(), static_cast<const void*>(&text));
 }
 
 Field read_attribute(const Handle& object, const std::string& name) {

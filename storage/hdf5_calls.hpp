@@ -28,8 +28,11 @@ T checked(T result, std::int64_t near, const std::string& name, const std::strin
 
 Handle properties(std::int64_t kind);  ///< an empty property list
 
-/// Keeps all attributes in the object header, where they are cheap to read and their order is that of writing.
-void configure_object(const Handle& creation);
+/// For making objects: no time stamps, and all attributes in the object header, where they are cheap to read and their
+/// order is that of writing.
+Handle object_properties(std::int64_t kind);
+
+Handle utf8_names(std::int64_t kind);  ///< for making links or attributes with UTF-8 names
 
 Handle string_type();  ///< variable-length UTF-8
 bool is_text(std::int64_t type);

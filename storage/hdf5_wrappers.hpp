@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <mutex>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,6 +15,10 @@
 #include "storage/record.hpp"
 
 namespace opponens::storage::hdf5 {
+
+/// libhdf5 is built without thread safety: whoever calls anything here holds this lock, and all handles that it made
+/// are closed before it is given back.
+[[nodiscard]] std::unique_lock<std::recursive_mutex> lock_library();
 
 /// Owns one HDF5 identifier (hid_t) and closes it.
 class Handle {
@@ -35,6 +40,10 @@ class Handle {
 Handle create_in_memory();
 std::vector<std::byte> image(const Handle& file);
 
+/// A file of any size on the disk, of the same form; an existing one is replaced.
+Handle create_on_disk(const std::string& path);
+void flush(const Handle& file);  ///< tells what closing could not
+
 /// Opens the bytes of a file, read-only. name is for messages.
 Handle open_in_memory(std::span<const std::byte> bytes, const std::string& name);
 
@@ -55,9 +64,10 @@ std::int64_t read_integer(const Handle& object, const std::string& name);
 std::uint64_t read_unsigned(const Handle& object, const std::string& name);
 std::string read_string(const Handle& object, const std::string& name);
 
-// Datasets: [n] or [rows x cols] of float64 in row-major order (large ones shuffled and deflated), [n] UTF-8 strings.
-void write_dataset(const Handle& group, const std::string& name, const Eigen::VectorXd& values);
-void write_dataset(const Handle& group, const std::string& name, const Eigen::MatrixXd& values);
+// Datasets: [n] or [rows x cols] of float64 in row-major order, contiguous (reading also knows chunked and compressed
+// ones), [n] UTF-8 strings. Those of numbers return where the values begin in the file; 0 when there are none.
+std::uint64_t write_dataset(const Handle& group, const std::string& name, const Eigen::VectorXd& values);
+std::uint64_t write_dataset(const Handle& group, const std::string& name, const Eigen::MatrixXd& values);
 void write_dataset(const Handle& group, const std::string& name, const std::vector<std::string>& values);
 Field read_dataset(const Handle& group, const std::string& name);
 

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdio>
 #include <system_error>
 #include <utility>
 
@@ -84,6 +85,39 @@ std::string read_file(const std::filesystem::path& path) {
   return bytes;
 }
 
+ReadOnlyFile::ReadOnlyFile(std::filesystem::path path)
+    : path_(std::move(path)), descriptor_(::open(path_.c_str(), O_RDONLY | O_CLOEXEC)) {
+  struct stat status {};
+  if (descriptor_ < 0) throw_errno("cannot open", path_);
+  if (::fstat(descriptor_, &status) == 0 && S_ISREG(status.st_mode)) {
+    size_ = static_cast<std::uint64_t>(status.st_size);
+    return;
+  }
+  ::close(descriptor_);
+  throw InputError(path_.string() + ": cannot read: not a regular file");
+}
+
+ReadOnlyFile::~ReadOnlyFile() { ::close(descriptor_); }
+
+bool ReadOnlyFile::read_at(std::uint64_t offset, std::span<std::byte> bytes) const {
+  if (offset > size_ || bytes.size() > size_ - offset) return false;
+  while (!bytes.empty()) {
+    const ssize_t count = ::pread(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) throw_errno("cannot read", path_);
+    if (count == 0) return false;  // cut off meanwhile
+    offset += static_cast<std::uint64_t>(count);
+    bytes = bytes.subspan(static_cast<std::size_t>(count));
+  }
+  return true;
+}
+
+std::optional<FileState> file_state(const std::filesystem::path& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) return std::nullopt;
+  return FileState{status.st_dev, status.st_ino, static_cast<std::uint64_t>(status.st_size), status.st_mtim.tv_nsec};
+}
+
 void write_new_file(const std::filesystem::path& path, std::span<const std::byte> bytes, Durable durable) {
   Descriptor file(path, O_WRONLY | O_CREAT | O_EXCL, "cannot create");
   write_all(file, bytes, path);
@@ -91,9 +125,31 @@ void write_new_file(const std::filesystem::path& path, std::span<const std::byte
   file.close();
 }
 
+void rename_file(const std::filesystem::path& from, const std::filesystem::path& to) {
+  if (::rename(from.c_str(), to.c_str()) != 0) throw_errno("cannot rename into place", to);
+}
+
+void sync_file(const std::filesystem::path& path) {
+  const Descriptor file(path, O_RDONLY, "cannot open");
+  sync(file, path);
+}
+
 void sync_directory(const std::filesystem::path& directory) {
   const Descriptor file(directory, O_RDONLY | O_DIRECTORY, "cannot open");
   sync(file, directory);
+}
+
+void append_bytes(const std::filesystem::path& path, std::string_view bytes) {
+  Descriptor file(path, O_WRONLY | O_APPEND, "cannot open");
+  struct stat before {};
+  if (::fstat(file.value(), &before) != 0) throw_errno("cannot append", path);
+  try {
+    write_all(file, std::as_bytes(std::span(bytes)), path);
+    file.close();
+  } catch (const InputError&) {
+    if (::truncate(path.c_str(), before.st_size) != 0) throw_errno("cannot cut back", path);
+    throw;
+  }
 }
 
 void append_line(const std::filesystem::path& path, std::string_view text) {

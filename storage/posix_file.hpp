@@ -6,7 +6,9 @@
 // system's words.
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -18,12 +20,49 @@ namespace opponens::storage {
 
 std::string read_file(const std::filesystem::path& path);
 
+/// A file open for reading at any place; several threads may read at once. Its size is that of opening.
+class ReadOnlyFile {
+ public:
+  explicit ReadOnlyFile(std::filesystem::path path);
+  ~ReadOnlyFile();
+  ReadOnlyFile(const ReadOnlyFile&) = delete;
+  ReadOnlyFile& operator=(const ReadOnlyFile&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+  std::uint64_t size() const { return size_; }
+  /// Fills bytes from offset; false when the file ends before.
+  bool read_at(std::uint64_t offset, std::span<std::byte> bytes) const;
+
+ private:
+  std::filesystem::path path_;
+  int descriptor_;
+  std::uint64_t size_ = 0;
+};
+
+/// Which file a name stands for just now, and how long it is.
+struct FileState {
+  std::uint64_t device = 0;
+  std::uint64_t inode = 0;
+  std::uint64_t size = 0;
+  std::int64_t changed_ns = 0;  ///< time of its last change, within the second
+  bool operator==(const FileState&) const = default;
+};
+std::optional<FileState> file_state(const std::filesystem::path& path);
+
 /// Creates path (it must not exist) and writes all bytes; durable: waits until the disk has them.
 enum class Durable { no, yes };
 void write_new_file(const std::filesystem::path& path, std::span<const std::byte> bytes, Durable durable);
 
+/// Renames inside one file system, replacing what is there.
+void rename_file(const std::filesystem::path& from, const std::filesystem::path& to);
+
+/// Waits until the disk has a file.
+void sync_file(const std::filesystem::path& path);
+
 /// Makes renames and removals inside directory durable.
 void sync_directory(const std::filesystem::path& directory);
+
+/// Appends bytes to a file that is there; cuts it back and throws when they do not fit.
+void append_bytes(const std::filesystem::path& path, std::string_view bytes);
 
 /// Appends text with one write(2) in append mode, so that lines of concurrent writers do not mix.
 void append_line(const std::filesystem::path& path, std::string_view text);

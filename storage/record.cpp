@@ -2,54 +2,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "storage/record.hpp"
 
-#include <bit>
 #include <cmath>
 #include <span>
 
 #include "core/require.hpp"
+#include "storage/canonical.hpp"
 #include "storage/sha256.hpp"
 #include "storage/text.hpp"
 
 namespace opponens::storage {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "canonical bytes are little-endian; a port has to swap");
-
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Feeds a record's values to the hash in an order and form that no container or HDF5 version can change.
-class Canonical {
- public:
-  void number(std::uint64_t value) { hash_.update(std::as_bytes(std::span(&value, 1))); }
-  void text(const std::string& value) {
-    number(value.size());
-    hash_.update(std::string_view(value));
-  }
-  void texts(const std::vector<std::string>& values) {
-    number(values.size());
-    for (const auto& value : values) text(value);
-  }
+struct HashSink {
+  Sha256 hash;
+  void bytes(std::span<const std::byte> bytes) { hash.update(bytes); }
   void doubles(const double* data, Eigen::Index count) {
-    hash_.update(std::as_bytes(std::span(data, static_cast<std::size_t>(count))));
+    hash.update(std::as_bytes(std::span(data, static_cast<std::size_t>(count))));
   }
-  void operator()(double value) { doubles(&value, 1); }
-  void operator()(std::int64_t value) { number(static_cast<std::uint64_t>(value)); }
-  void operator()(const std::string& value) { text(value); }
-  void operator()(const std::vector<std::string>& values) { texts(values); }
-  void operator()(const Eigen::VectorXd& values) {
-    number(static_cast<std::uint64_t>(values.size()));
-    doubles(values.data(), values.size());
-  }
-  void operator()(const Eigen::MatrixXd& values) {
-    number(static_cast<std::uint64_t>(values.rows()));
-    number(static_cast<std::uint64_t>(values.cols()));
+  void vector(const Eigen::VectorXd& values) { doubles(values.data(), values.size()); }
+  void matrix(const Eigen::MatrixXd& values) {
     const RowMajor rows = values;
     doubles(rows.data(), rows.size());
   }
-  std::string hex() { return hash_.hex(); }
-
- private:
-  Sha256 hash_;
 };
 
 void check_text(const std::string& text, const std::string& where) {
@@ -80,27 +56,9 @@ bool is_array(const Field& field) { return field.index() >= 3; }
 }  // namespace
 
 std::string content_hash(const Record& record) {
-  Canonical bytes;
-  bytes.text("opponens record 1");
-  bytes.text(record.kind);
-  bytes.text(record.name);
-  bytes.text(record.provenance.command);
-  bytes.texts(record.provenance.inputs);
-  bytes.number(record.provenance.files.size());
-  for (const auto& [file, hash] : record.provenance.files) {
-    bytes.text(file);
-    bytes.text(hash);
-  }
-  bytes.text(record.provenance.parameters);
-  bytes.number(record.provenance.seed);
-  bytes.text(record.provenance.program_version);
-  bytes.number(record.fields.size());
-  for (const auto& [name, field] : record.fields) {
-    bytes.text(name);
-    bytes.number(field.index());
-    std::visit(bytes, field);
-  }
-  return bytes.hex();
+  HashSink sink;
+  Canonical<HashSink>(sink).record(record);
+  return sink.hash.hex();
 }
 
 void check_storable(const Record& record) {

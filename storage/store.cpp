@@ -5,13 +5,12 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <iterator>
-#include <set>
+#include <unordered_set>
 #include <utility>
 
 #include "core/require.hpp"
 #include "storage/batch_file.hpp"
-#include "storage/index.hpp"
+#include "storage/catalog.hpp"
 #include "storage/posix_file.hpp"
 #include "storage/production_order.hpp"
 
@@ -20,21 +19,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Payload of one file. A whole file is read and hashed to read one object, so it is kept to tens of milliseconds.
-constexpr std::size_t kBatchBytes = 16U << 20U;
+constexpr std::size_t kBatchBytes = 16U << 20U;  // payload of one file; two of them are in memory while it is made
 constexpr const char* kTemporaryPrefix = ".tmp-";
 constexpr const char* kRunLog = "runs.jsonl";
 
 /// Batch files in order of commit: by number, then by name (two writers without a lock may take the same number).
-std::vector<std::string> batch_files(const fs::path& directory) {
+std::vector<std::string> batch_files(const std::vector<std::string>& names) {
   std::vector<std::string> files;
-  for (auto& name : directory_entries(directory)) {
-    if (batch_number(name) >= 0) files.push_back(std::move(name));
+  for (const auto& name : names) {
+    if (batch_number(name) >= 0) files.push_back(name);
   }
   std::stable_sort(files.begin(), files.end(),
                    [](const auto& a, const auto& b) { return batch_number(a) < batch_number(b); });
   return files;
 }
+
+std::vector<std::string> batch_files(const fs::path& directory) { return batch_files(directory_entries(directory)); }
 
 void create_store(const fs::path& directory) {
   std::error_code error;
@@ -43,18 +43,20 @@ void create_store(const fs::path& directory) {
   if (::access(directory.c_str(), W_OK | X_OK) != 0) throw_errno("cannot write in the store", directory);
 }
 
-void require_store(const fs::path& directory) {
+/// Returns its batch files.
+std::vector<std::string> require_store(const fs::path& directory) {
   std::error_code error;
   const fs::file_status status = fs::status(directory, error);
   if (!fs::exists(status)) throw InputError(directory.string() + ": no such store: " + error.message());
   if (!fs::is_directory(status)) throw InputError(directory.string() + ": not a directory, so not a store");
-  if (fs::exists(directory / kIndexName) || !batch_files(directory).empty()) return;
+  std::vector<std::string> files = batch_files(directory);
+  if (fs::exists(directory / kIndexName) || !files.empty()) return files;
   throw InputError(directory.string() + ": not a store: it holds neither " + kIndexName + " nor any batch file");
 }
 
 /// What a writer left that died between creating and renaming. Only to be called under the lock.
-void remove_leftovers(const fs::path& directory) {
-  for (const auto& name : directory_entries(directory)) {
+void remove_leftovers(const fs::path& directory, const std::vector<std::string>& names) {
+  for (const auto& name : names) {
     std::error_code ignored;
     if (name.starts_with(kTemporaryPrefix)) fs::remove(directory / name, ignored);
   }
@@ -94,67 +96,61 @@ class Cleanup {
 
 }  // namespace
 
-Store::Store(fs::path directory, bool create) : directory_(std::move(directory)) {
+struct Store::State {
+  Catalog catalog;
+  std::vector<std::string> missing;           // sentences, one per file that the index names and that is gone
+  std::vector<std::string> unreadable;        // sentences, one per file that cannot be read
+  mutable std::unique_ptr<BatchReader> last;  // the file read last
+
+  void refresh(const fs::path& directory, const std::vector<std::string>& files);
+  void require_undamaged() const;
+  void write_batches(const fs::path& directory, std::size_t number, const std::vector<Record>& records,
+                     const std::vector<std::string>& ids, const std::vector<std::size_t>& fresh);
+  Catalog::Place find(const fs::path& directory, const std::string& id) const;
+};
+
+Store::Store(fs::path directory, bool create) : directory_(std::move(directory)), state_(std::make_unique<State>()) {
   if (create) create_store(directory_);
-  if (!create) require_store(directory_);
-  refresh();
+  const std::vector<std::string> files = create ? batch_files(directory_) : require_store(directory_);
+  state_->refresh(directory_, files);
   if (!create || fs::exists(directory_ / kIndexName)) return;
-  // An index marks an empty store as one.
-  if (!save_index(directory_, index_)) throw InputError(directory_.string() + ": cannot write the store's index");
+  // An index marks an empty store as one. Another process may make it first.
+  if (state_->catalog.save(directory_) || fs::exists(directory_ / kIndexName)) return;
+  throw InputError(directory_.string() + ": cannot write the store's index");
 }
 
 Store::~Store() = default;
 Store::Store(Store&&) noexcept = default;
 Store& Store::operator=(Store&&) noexcept = default;
 
-void Store::adopt(std::vector<IndexEntry> entries) {
-  for (auto& entry : entries) {
-    if (by_id_.emplace(entry.id, index_.size()).second) index_.push_back(std::move(entry));
-  }
-}
-
-void Store::refresh() {
-  const std::optional<std::vector<IndexEntry>> stored = load_index(directory_);
-  const std::vector<std::string> files = batch_files(directory_);
-  std::map<std::string, std::vector<IndexEntry>> known;
-  if (stored) {
-    for (const auto& entry : *stored) known[entry.file].push_back(entry);
-  }
-  index_.clear();
-  by_id_.clear();
-  missing_.clear();
-  unreadable_.clear();
-  bool stale = !stored;
-  for (const auto& file : files) {
-    const auto found = known.find(file);
-    if (found != known.end()) {
-      adopt(std::move(found->second));
-      known.erase(found);
-      continue;
-    }
-    stale = true;
+void Store::State::refresh(const fs::path& directory, const std::vector<std::string>& files) {
+  missing.clear();
+  unreadable.clear();
+  const Catalog::Changes changes = catalog.load(directory, files);
+  for (const auto& file : changes.unknown) {
     try {
-      adopt(BatchReader(directory_ / file).entries());
+      catalog.append(file, BatchReader(directory / file).entries());
     } catch (const NewerSchemaError&) {
       throw;
     } catch (const StorageError& error) {
-      unreadable_.emplace_back(error.what());
+      unreadable.emplace_back(error.what());
     }
   }
-  for (const auto& [file, entries] : known) {
-    missing_.push_back((directory_ / file).string() + ": the file is missing; the index says that it held " +
-                       std::to_string(entries.size()) + " object(s)");
+  if (!changes.unknown.empty()) catalog.arrange(files);
+  for (const auto& [file, entries] : changes.gone) {
+    missing.push_back((directory / file).string() + ": the file is missing; the index says that it held " +
+                      std::to_string(entries.size()) + " object(s)");
   }
-  if (!stale || !missing_.empty() || !unreadable_.empty()) return;
-  const DirectoryLock lock(directory_, DirectoryLock::Wait::no);
-  if (lock.held()) save_index(directory_, index_);
+  if (!missing.empty() || !unreadable.empty() || catalog.is_saved()) return;
+  const DirectoryLock lock(directory, DirectoryLock::Wait::no);
+  if (lock.held()) catalog.save(directory);
 }
 
-void Store::require_undamaged() const {
-  const std::size_t count = unreadable_.size() + missing_.size();
+void Store::State::require_undamaged() const {
+  const std::size_t count = unreadable.size() + missing.size();
   if (count == 0) return;
   const std::string more = count > 1 ? " (and " + std::to_string(count - 1) + " more)" : "";
-  throw StorageError((unreadable_.empty() ? missing_ : unreadable_).front() + more);
+  throw StorageError((unreadable.empty() ? missing : unreadable).front() + more);
 }
 
 std::vector<std::string> Store::commit(const std::vector<Record>& records) {
@@ -165,94 +161,87 @@ std::vector<std::string> Store::commit(const std::vector<Record>& records) {
     ids.push_back(content_hash(record));
   }
   const DirectoryLock lock(directory_, DirectoryLock::Wait::yes);
-  if (lock.held()) remove_leftovers(directory_);
-  refresh();
-  require_undamaged();
+  const std::vector<std::string> names = directory_entries(directory_);
+  if (lock.held()) remove_leftovers(directory_, names);
+  const std::vector<std::string> files = batch_files(names);
+  state_->refresh(directory_, files);
+  state_->require_undamaged();
   std::vector<std::size_t> fresh;
-  std::set<std::string> seen;
+  std::unordered_set<std::string> seen;
   for (std::size_t i = 0; i < records.size(); ++i) {
-    if (!by_id_.contains(ids[i]) && seen.insert(ids[i]).second) fresh.push_back(i);
+    if (!state_->catalog.contains(ids[i]) && seen.insert(ids[i]).second) fresh.push_back(i);
   }
-  if (std::any_of(ids.begin(), ids.end(), [&](const std::string& id) { return by_id_.contains(id); })) {
+  if (seen.size() < std::unordered_set<std::string>(ids.begin(), ids.end()).size()) {
     // Before the files: should writing them fail, the line names what is not there and says nothing.
-    log_run(production_line(ids, fresh.empty() ? index_.back().id : ids[fresh.back()]));
+    log_run(production_line(ids, fresh.empty() ? state_->catalog.last_id() : ids[fresh.back()]));
   }
   if (fresh.empty()) return ids;
-  write_batches(records, ids, fresh);
-  save_index(directory_, index_);
+  const std::size_t number = files.empty() ? 0 : static_cast<std::size_t>(batch_number(files.back())) + 1;
+  state_->write_batches(directory_, number, records, ids, fresh);
+  state_->catalog.save(directory_);
   return ids;
 }
 
-void Store::write_batches(const std::vector<Record>& records, const std::vector<std::string>& ids,
-                          const std::vector<std::size_t>& fresh) {
-  const std::vector<std::string> present = batch_files(directory_);
-  std::size_t number = present.empty() ? 0 : static_cast<std::size_t>(batch_number(present.back())) + 1;
-  Cleanup cleanup(directory_);
-  std::vector<IndexEntry> entries;
+void Store::State::write_batches(const fs::path& directory, std::size_t number, const std::vector<Record>& records,
+                                 const std::vector<std::string>& ids, const std::vector<std::size_t>& fresh) {
+  Cleanup cleanup(directory);
+  std::vector<std::vector<IndexEntry>> entries;
   std::vector<std::pair<std::string, std::string>> renames;  // temporary -> final name
   for (const auto& batch : split(records, fresh)) {
     std::vector<const Record*> batch_records;
     std::vector<std::string> batch_ids;
+    entries.emplace_back();
     for (const std::size_t i : batch) {
-      batch_records.push_back(&records[i]);
+      const Record& record = records[i];
+      batch_records.push_back(&record);
       batch_ids.push_back(ids[i]);
+      entries.back().push_back({ids[i], record.kind, record.name, {}, record.provenance.inputs});
     }
     const std::vector<std::byte> bytes = encode_batch(batch_records, batch_ids);
     const std::string name = batch_file_name(number++, bytes);
     const std::string temporary = kTemporaryPrefix + std::to_string(::getpid()) + "-" + name;
     cleanup.names.push_back(temporary);
-    write_new_file(directory_ / temporary, bytes, Durable::yes);
+    write_new_file(directory / temporary, bytes, Durable::yes);
     renames.emplace_back(temporary, name);
-    for (const std::size_t i : batch) {
-      const Record& record = records[i];
-      entries.push_back({ids[i], record.kind, record.name, name, record.provenance.inputs});
-    }
   }
   for (const auto& [temporary, name] : renames) {
     std::error_code error;
-    fs::rename(directory_ / temporary, directory_ / name, error);
-    if (error) throw InputError((directory_ / name).string() + ": cannot rename into place: " + error.message());
+    fs::rename(directory / temporary, directory / name, error);
+    if (error) throw InputError((directory / name).string() + ": cannot rename into place: " + error.message());
     cleanup.names.push_back(name);
   }
-  sync_directory(directory_);
+  sync_directory(directory);
   cleanup.names.clear();
-  adopt(std::move(entries));
+  for (std::size_t i = 0; i < renames.size(); ++i) catalog.append(renames[i].second, entries[i]);
 }
 
-const IndexEntry& Store::find(const std::string& id) const {
+Catalog::Place Store::State::find(const fs::path& directory, const std::string& id) const {
   require(!id.empty(), "Store::read: an id or a prefix of one is needed");
-  auto found = by_id_.lower_bound(id);
-  if (found == by_id_.end() || !found->first.starts_with(id)) {
+  const std::vector<Catalog::Place> found = catalog.find(id);
+  if (found.empty()) {
     require_undamaged();  // the object may have been in what is lost
-    throw InputError(directory_.string() + ": no object with id '" + id + "'");
+    throw InputError(directory.string() + ": no object with id '" + id + "'");
   }
-  const auto next = std::next(found);
-  if (found->first != id && next != by_id_.end() && next->first.starts_with(id)) {
-    throw InputError(directory_.string() + ": id '" + id + "' is ambiguous: it begins " + found->first + " and " +
-                     next->first);
-  }
-  return index_[found->second];
+  if (found.size() == 1) return found.front();
+  throw InputError(directory.string() + ": id '" + id + "' is ambiguous: it begins " + catalog.entry(found[0]).id +
+                   " and " + catalog.entry(found[1]).id);
 }
 
-const BatchReader& Store::reader(const std::string& file) const {
-  if (last_ == nullptr || last_->file_name() != file) {
-    last_.reset();  // before the next one is read: never two files in memory
-    last_ = std::make_unique<BatchReader>(directory_ / file);
-  }
-  return *last_;
-}
+IndexEntry Store::find(const std::string& id) const { return state_->catalog.entry(state_->find(directory_, id)); }
 
 Record Store::read(const std::string& id) const {
-  const IndexEntry& entry = find(id);
-  return reader(entry.file).read(entry.id);
+  const Catalog::Place place = state_->find(directory_, id);
+  const IndexEntry entry = state_->catalog.entry(place);
+  if (state_->last == nullptr || state_->last->file_name() != entry.file) {
+    state_->last.reset();  // before the next one is opened: a file of another maker is kept in memory
+    state_->last = std::make_unique<BatchReader>(directory_ / entry.file);
+  }
+  return state_->last->read(place.position, entry.id);
 }
 
 std::vector<IndexEntry> Store::list(const std::string& kind) const {
-  require_undamaged();
-  std::vector<IndexEntry> entries;
-  std::copy_if(index_.begin(), index_.end(), std::back_inserter(entries),
-               [&](const IndexEntry& entry) { return kind.empty() || entry.kind == kind; });
-  return entries;
+  state_->require_undamaged();
+  return state_->catalog.list(kind);
 }
 
 std::vector<IndexEntry> Store::list_as_produced(const std::string& kind) const {
@@ -263,7 +252,7 @@ std::vector<IndexEntry> Store::list_as_produced(const std::string& kind) const {
 }
 
 std::vector<std::string> Store::check() const {
-  std::vector<std::string> sentences = missing_;  // what cannot be read is read again below
+  std::vector<std::string> sentences = state_->missing;  // what cannot be read is read again below
   for (const auto& name : directory_entries(directory_)) {
     if (!name.ends_with(".h5") || name.starts_with(kTemporaryPrefix)) continue;
     const std::string path = (directory_ / name).string();

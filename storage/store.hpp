@@ -3,7 +3,6 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -30,10 +29,10 @@ struct IndexEntry {
   std::vector<std::string> inputs;
 };
 
-class BatchReader;
-
 /// A directory of immutable HDF5 files, one per committed batch, and an index that can be rebuilt from them.
-/// Several processes may read and commit at once. One Store object belongs to one thread (libhdf5 is not thread safe).
+/// Several processes may read and commit at once. One Store object belongs to one thread; several threads have one
+/// each, and read side by side (libhdf5, which is not thread safe, only writes, and reads files of other makers, under
+/// a lock).
 class Store {
  public:
   /// Opens an existing store, or makes one when create is set. Throws InputError when the directory cannot be used,
@@ -52,8 +51,12 @@ class Store {
   std::vector<std::string> commit(const std::vector<Record>& records);
 
   /// Reads one object and checks its content hash. id may be an unambiguous prefix. Throws InputError for an unknown or
-  /// ambiguous id. The last file read is kept in memory (tens of MB at most), so reading in order of commit is cheap.
+  /// ambiguous id. Only the object's own bytes are read. The file read last stays open, so reading in order of commit
+  /// is cheapest: one pass over the disk, about the speed of SHA-256, and one object in memory.
   Record read(const std::string& id) const;
+
+  /// What the index tells of one object, found as above; nothing of it is read.
+  IndexEntry find(const std::string& id) const;
 
   /// Entries of a kind (all when empty), in order of commit, as of opening or this object's last commit.
   std::vector<IndexEntry> list(const std::string& kind = "") const;
@@ -71,20 +74,9 @@ class Store {
   const std::filesystem::path& directory() const { return directory_; }
 
  private:
-  void refresh();
-  void adopt(std::vector<IndexEntry> entries);
-  void require_undamaged() const;
-  void write_batches(const std::vector<Record>& records, const std::vector<std::string>& ids,
-                     const std::vector<std::size_t>& fresh);
-  const IndexEntry& find(const std::string& id) const;
-  const BatchReader& reader(const std::string& file) const;
-
+  struct State;
   std::filesystem::path directory_;
-  std::vector<IndexEntry> index_;              // order of commit
-  std::map<std::string, std::size_t> by_id_;   // id -> position in index_
-  std::vector<std::string> missing_;           // sentences, one per file that the index names and that is gone
-  std::vector<std::string> unreadable_;        // sentences, one per file that cannot be read
-  mutable std::unique_ptr<BatchReader> last_;  // the file read last
+  std::unique_ptr<State> state_;
 };
 
 }  // namespace opponens::storage

@@ -5,46 +5,13 @@
 #include <cmath>
 
 #include <gtest/gtest.h>
-#include <boost/math/distributions/binomial.hpp>
 
 #include "analysis/statistics.hpp"
+#include "tests/analysis/binomial_bound.hpp"
 #include "tests/analysis/support.hpp"
 
 namespace opponens::analysis {
 namespace {
-
-constexpr double kFalseAlarm = 1e-4;
-
-/// Whether a count is what Binomial(trials, p) gives, two-sided exact at the false-alarm rate.
-bool accepted(double count, int trials, double p) {
-  const boost::math::binomial distribution(trials, p);
-  return boost::math::cdf(distribution, count) >= 0.5 * kFalseAlarm &&
-         boost::math::cdf(boost::math::complement(distribution, count - 1)) >= 0.5 * kFalseAlarm;
-}
-
-double covered(const Eigen::MatrixXd& samples, const Eigen::VectorXd& half_width) {
-  double count = 0;
-  for (Eigen::Index i = 0; i < samples.rows(); ++i) {
-    count += (samples.row(i).transpose().array().abs() <= half_width.array()).all() ? 1 : 0;
-  }
-  return count;
-}
-
-TEST(BoxCoverage, TheNthRootKeepsThePromiseAndThePrintedOneDoesNot) {
-  // Null: 20,000 independent standard normals in 16 dimensions fall into the box with probability 0.95, so the count
-  // is Binomial(20000, 0.95). Fixed seed.
-  constexpr int kSamples = 20000;
-  Rng rng = stream(20, "box coverage");
-  const Eigen::MatrixXd samples = test::normal_matrix(kSamples, 16, rng);
-  const Eigen::VectorXd ones = Eigen::VectorXd::Ones(16);
-  const double right = covered(samples, box_half_width(ones, 0.05, BoxRoot::n, 16, 16));
-  const double printed = covered(samples, box_half_width(ones, 0.05, BoxRoot::literal, 16, 16));
-  RecordProperty("coverage_root_n", std::to_string(right / kSamples));
-  RecordProperty("coverage_literal", std::to_string(printed / kSamples));
-  EXPECT_TRUE(accepted(right, kSamples, 0.95)) << right / kSamples;
-  EXPECT_FALSE(accepted(printed, kSamples, 0.95)) << printed / kSamples;
-  EXPECT_TRUE(accepted(printed, kSamples, std::pow(0.95, 8.0))) << "sqrt(0.95)^16 = 66.3 %";
-}
 
 std::vector<Cluster> clusters_of(const std::vector<Eigen::MatrixXd>& samples) {
   std::vector<Cluster> clusters;
@@ -67,12 +34,13 @@ TEST(BoxCoverage, HeldOutOfAKnownDistribution) {
   for (int c = 0; c < 100; ++c) parts.push_back(test::normal_matrix(200, 5, rng) * mixing);
   Rng bootstrap = stream(21, "bootstrap");
   const BoxCoverage found = box_coverage(clusters_of(parts), settings_for(5), bootstrap);
-  EXPECT_TRUE(accepted(std::round(*found.full.held_out * 20000), 20000, 0.95)) << *found.full.held_out;
+  EXPECT_TRUE(test::is_binomial(std::round(*found.full.held_out * 20000), 20000, 0.95)) << *found.full.held_out;
   EXPECT_NEAR(found.full.nominal, 0.95, 1e-12);
   EXPECT_LT(found.full.interval->low, 0.95);
   EXPECT_GT(found.full.interval->high, 0.95);
   // The first k coordinates have their own nominal value, between 0.95 and 1.
-  EXPECT_TRUE(accepted(std::round(*found.kept.held_out * 20000), 20000, found.kept.nominal)) << *found.kept.held_out;
+  EXPECT_TRUE(test::is_binomial(std::round(*found.kept.held_out * 20000), 20000, found.kept.nominal))
+      << *found.kept.held_out;
   EXPECT_GT(found.kept.nominal, 0.95);
 }
 

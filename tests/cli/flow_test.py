@@ -15,7 +15,8 @@ from html.parser import HTMLParser
 
 import h5py
 
-from support import HEADER, SOURCE, data_set, forge, must, rows, run, snapshot, start, without_run_log
+from support import (HEADER, SOURCE, data_set, forge, must, rows, run, snapshot, start, wait_for_cpu_time, without_run_log,
+                     written_since)
 
 SCENE = "models/scenes/cylinder_shelf.yaml"
 
@@ -162,7 +163,7 @@ class Pipeline(unittest.TestCase):
             store = self.copied(folder)
             before = {one["id"] for one in must("show", "--store", store)["objects"]}
             program = start("plan", "--store", store, "--scene", SCENE, "--runs", 100000, "--seed", 100, "--threads", 2)
-            time.sleep(8)
+            wait_for_cpu_time(program, seconds=10)  # setting up the worlds takes 2 to 3, a run some ms
             program.send_signal(signal.SIGINT)
             _, err = program.communicate(timeout=120)
             self.assertEqual(program.returncode, 130, err)
@@ -245,6 +246,31 @@ class Pipeline(unittest.TestCase):
         for kind in ("grasp", "synergy_set", "hand_demonstration", "demonstration"):
             self.assertIn(kind, kinds)
         self.assertEqual(kinds.count("demonstration"), kinds.count("hand_demonstration"))
+
+    def test_synergy_sets_are_compared(self):
+        with tempfile.TemporaryDirectory() as folder:
+            store = self.copied(folder)
+            same = must("compare", "--store", store, "--with", self.one / "store")
+            self.assertEqual(same["a"], same["b"])
+            self.assertEqual([group["name"] for group in same["groups"]], ["pre-grasp", "1", "2", "3", "4"])
+            for group in same["groups"]:
+                self.assertLess(group["distance_rad"], 1e-6)
+                self.assertLess(abs(group["bhattacharyya"]), 1e-9)
+            first = same["a"]
+            must("analyze", "--store", store, "--transition", "changepoint")
+            second = must("compare", "--store", store, "--with", self.one / "store")["a"]
+            other = must("compare", first[:12], second[:12], "--store", store)
+            self.assertEqual((other["a"], other["b"]), (first, second))
+            self.assertGreater(min(group["bhattacharyya"] for group in other["groups"]), 1e-3)
+            back = must("compare", second, first, "--store", store)
+            for one, two in zip(other["groups"], back["groups"]):
+                self.assertEqual(one["k"], two["k"][::-1])
+                self.assertAlmostEqual(one["distance_rad"], two["distance_rad"], places=9)
+            for arguments, said in (((), "name two synergy sets"), ((first,), "name two synergy sets"),
+                                    ((first, self.documents["plan"]["ids"][0]), "no synergy set")):
+                code, _, err = run("compare", *arguments, "--store", store)
+                self.assertEqual(code, 2)
+                self.assertIn(said, err)
 
     def test_h5py_reads_the_store(self):
         kinds = set()
@@ -428,10 +454,9 @@ class Demo(unittest.TestCase):
             self.assertTrue((out / ".opponens-demo").exists())
             stale = out / "store" / "stale.txt"
             stale.write_text("of the demo before")
+            begin = time.time()
             program = start("demo", "--out", out)
-            for _ in range(600):
-                if not stale.exists() and snapshot(out / "store"):
-                    break
+            while program.poll() is None and not written_since(out / "store", begin):
                 time.sleep(0.1)
             program.send_signal(signal.SIGINT)
             program.communicate(timeout=120)

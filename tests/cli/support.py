@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The opponens authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs the opponens program and looks at what it leaves behind."""
+import contextlib
 import hashlib
 import json
 import os
@@ -8,6 +9,7 @@ import pathlib
 import re
 import subprocess
 import sys
+import time
 
 import h5py
 
@@ -54,6 +56,24 @@ def start(*arguments, cwd=None):
                             cwd=cwd or SOURCE)
 
 
+def wait_for_cpu_time(program, seconds):
+    """Until the program has used that much, on a busy machine too, or has ended."""
+    while program.poll() is None:
+        used = pathlib.Path(f"/proc/{program.pid}/stat").read_text().rsplit(")", 1)[1].split()[11:13]
+        if sum(map(int, used)) >= seconds * os.sysconf("SC_CLK_TCK"):
+            return
+        time.sleep(0.1)
+
+
+def written_since(store, moment):
+    """Whether an object file of the store was written after that time; others may vanish meanwhile."""
+    for file in store.glob("*.h5"):
+        with contextlib.suppress(FileNotFoundError):
+            if file.stat().st_mtime > moment:
+                return True
+    return False
+
+
 def must(*arguments, code=0, **options):
     """The JSON document of a command that has to end with the given exit code."""
     got, out, err = run(*arguments, "--json", **options)
@@ -79,7 +99,7 @@ def forge(store, kind, change):
                 group.attrs["id"] = content_hash(read_object(group))
         if groups:
             path.rename(path.with_name(f"{path.stem.split('-')[0]}-{hashlib.sha256(path.read_bytes()).hexdigest()[:32]}.h5"))
-    (store / "index.json").unlink()
+    (store / "index.bin").unlink()
 
 
 def without_run_log(page):

@@ -61,7 +61,7 @@ TEST(Disk, ReadOnlyDirectoryCanBeReadButNotWritten) {
   const TemporaryDirectory directory;
   const fs::path path = directory / "store";
   const std::string id = Store(path, true).commit({small_record(1)}).front();
-  fs::remove(path / "index.json");  // it cannot be rebuilt on disk either
+  fs::remove(path / "index.bin");  // it cannot be rebuilt on disk either
   fs::create_directory(directory / "closed");
   ::chmod((directory / "").c_str(), 0755);
   ::chmod(path.c_str(), 0555);

@@ -34,7 +34,9 @@ struct Files {
     spill(directory / "data/csv/b.csv", kRecording);
     if (!name.empty()) spill(directory / name, text);
   }
-  SourceReading read() const { return read_source({directory / "data"}, load_source(directory / "source.yaml")); }
+  std::vector<Recording> read() const {
+    return read_source({directory / "data"}, load_source(directory / "source.yaml"));
+  }
   std::string refusal() const {
     return message_of<InputError>([&] { read(); });
   }
@@ -48,9 +50,9 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 
 TEST(Source, ReadsUnitsSignsLabelsAndTime) {
   const Files files;
-  const SourceReading reading = files.read();
-  ASSERT_EQ(reading.demonstrations.size(), 2U);
-  const Demonstration& first = reading.demonstrations[0];
+  const std::vector<Recording> reading = files.read();
+  ASSERT_EQ(reading.size(), 2U);
+  const Demonstration& first = reading[0].demonstration;
   EXPECT_EQ(first.id, "a");
   EXPECT_EQ(first.labels,
             (std::map<std::string, std::string>{{"subject", "1"}, {"object", "cup"}, {"source", "made_up"}}));
@@ -61,10 +63,10 @@ TEST(Source, ReadsUnitsSignsLabelsAndTime) {
   EXPECT_TRUE(first.q_h.isApprox(degree * expected, 1e-15)) << first.q_h;
   EXPECT_TRUE(first.time.isApprox(Eigen::Vector3d(0.0, 0.1, 0.3), 1e-15)) << first.time;
   EXPECT_EQ(first.origin, Origin::recorded);
-  const FileReport& report = reading.files[0];
+  const FileReport& report = reading[0].file;
   EXPECT_EQ(report.sha256, sha256(kRecording));
-  EXPECT_EQ(report.index, "index.csv");
-  EXPECT_EQ(report.index_sha256, sha256(slurp(files.directory / "data/index.csv")));
+  EXPECT_EQ(report.companions,
+            (std::map<std::string, std::string>{{"index.csv", sha256(slurp(files.directory / "data/index.csv"))}}));
   EXPECT_EQ(report.rows, 3);
   EXPECT_EQ(report.samples, 3);
   EXPECT_NEAR(report.duration, 0.3, 1e-15);
@@ -76,16 +78,16 @@ TEST(Source, AcceptsByteOrderMarkCrLfAndBlankEnd) {
   std::string text = "\xEF\xBB\xBF";
   for (const char c : kRecording) text += c == '\n' ? std::string("\r\n") : std::string(1, c);
   const Files files("data/csv/b.csv", text + "\r\n \n");
-  const SourceReading reading = files.read();
-  EXPECT_EQ(reading.demonstrations[1].q_h, reading.demonstrations[0].q_h);
+  const std::vector<Recording> reading = files.read();
+  EXPECT_EQ(reading[1].demonstration.q_h, reading[0].demonstration.q_h);
 }
 
 TEST(Source, OneRecordingCanBeGiven) {
   const Files files;
   const SourceDescription source = load_source(files.directory / "source.yaml");
-  const SourceReading reading = read_source({files.directory / "data/csv/b.csv"}, source);
-  ASSERT_EQ(reading.demonstrations.size(), 1U);
-  EXPECT_EQ(reading.demonstrations[0].labels.at("object"), "pen");
+  const std::vector<Recording> reading = read_source({files.directory / "data/csv/b.csv"}, source);
+  ASSERT_EQ(reading.size(), 1U);
+  EXPECT_EQ(reading[0].demonstration.labels.at("object"), "pen");
   spill(files.directory / "data/csv/c.csv", kRecording);
   EXPECT_TRUE(contains(message_of<InputError>([&] { read_source({files.directory / "data/csv/c.csv"}, source); }),
                        {"c.csv", "not listed", "index.csv"}));
@@ -106,7 +108,7 @@ TEST(Source, ResamplesLinearlyAndTrims) {
   spill(files.directory / "data/csv/b.csv", text);
   const std::string yaml = replaced(kYaml, "unit: deg", "unit: rad\nresample: {rate: 10}");
   spill(files.directory / "source.yaml", yaml);
-  const Demonstration whole = files.read().demonstrations[0];
+  const Demonstration whole = files.read()[0].demonstration;
   ASSERT_EQ(whole.time.size(), 31);
   for (int i = 0; i <= 30; ++i) {
     EXPECT_NEAR(whole.time[i], 0.1 * i, 1e-12);
@@ -114,15 +116,15 @@ TEST(Source, ResamplesLinearlyAndTrims) {
   }
   // Change over 0.2 s is 0.2 rad inside the ramp, 0.1 rad at its ends (i = 10, 20) and 0 outside.
   spill(files.directory / "source.yaml", yaml + "trim: {speed: 0.25, window: 0.2}\n");
-  SourceReading trimmed = files.read();
-  EXPECT_EQ(trimmed.demonstrations[0].time.size(), 11);
-  EXPECT_EQ(trimmed.demonstrations[0].time[0], 0.0);
-  EXPECT_NEAR(trimmed.demonstrations[0].q_h(0, 0), 0.0, 1e-9);
-  EXPECT_NEAR(trimmed.demonstrations[0].q_h(10, 0), 1.0, 1e-9);
-  EXPECT_NEAR(trimmed.files[0].trimmed_start, 1.0, 1e-9);
-  EXPECT_NEAR(trimmed.files[0].trimmed_end, 1.0, 1e-9);
+  std::vector<Recording> trimmed = files.read();
+  EXPECT_EQ(trimmed[0].demonstration.time.size(), 11);
+  EXPECT_EQ(trimmed[0].demonstration.time[0], 0.0);
+  EXPECT_NEAR(trimmed[0].demonstration.q_h(0, 0), 0.0, 1e-9);
+  EXPECT_NEAR(trimmed[0].demonstration.q_h(10, 0), 1.0, 1e-9);
+  EXPECT_NEAR(trimmed[0].file.trimmed_start, 1.0, 1e-9);
+  EXPECT_NEAR(trimmed[0].file.trimmed_end, 1.0, 1e-9);
   spill(files.directory / "source.yaml", yaml + "trim: {speed: 0.75, window: 0.2}\n");
-  EXPECT_EQ(files.read().demonstrations[0].time.size(), 9);
+  EXPECT_EQ(files.read()[0].demonstration.time.size(), 9);
   spill(files.directory / "source.yaml", yaml + "trim: {speed: 2, window: 0.2}\n");
   EXPECT_TRUE(contains(files.refusal(), {"a.csv", "after resampling and trimming", "'0'", "trim.speed"}));
 }
@@ -143,7 +145,7 @@ TEST(Source, TooManySamplesAreRefusedBeforeTheyAreMade) {
 
 TEST(Source, CalibrationBecomesALabel) {
   const Files files("source.yaml", kYaml + "calibrate: {method: range, by: subject}\n");
-  const Demonstration first = files.read().demonstrations[0];
+  const Demonstration first = files.read()[0].demonstration;
   EXPECT_EQ(first.labels.at("calibration"), "range by subject");
 }
 
@@ -176,7 +178,7 @@ TEST(Source, BadRecordingsNameFileLineFieldValueAndExpectation) {
       {name, replaced(good, "pressure", ""), {"b.csv:1: a column's name is ''"}},
       {"data/index.csv", "", {"index.csv: the file is empty"}},
       {"data/index.csv", "file,who,what\n", {"index.csv: the index lists no recordings"}},
-      {"data/index.csv", replaced(kIndex, "who", "whom"), {"index.csv:1: header is 'file, whom, what'", "'who'"}},
+      {"data/index.csv", replaced(kIndex, "who", "whom"), {"index.csv:1: header is 'file, what, whom'", "'who'"}},
       {"data/index.csv", replaced(kIndex, "file", "name"), {"index.csv:1:", "file column 'file'"}},
       {"data/index.csv", replaced(kIndex, "b.csv", "z.csv"), {"index.csv:3: field 'file' is 'z.csv'", "exists"}},
       {"data/index.csv", replaced(kIndex, "b.csv", ""), {"index.csv:3: field 'file' is ''"}},
@@ -195,7 +197,7 @@ TEST(Source, BadDescriptionsNameFileLineFieldValueAndExpectation) {
   const std::vector<BadFile> cases{
       {name, "a: [", {"source.yaml:", "not YAML"}},
       {name, "", {"the document", "a mapping"}},
-      {name, with("unit: deg", "unit: degrees"), {"source.yaml:5: unit is 'degrees': expected one of rad, deg"}},
+      {name, with("unit: deg", "unit: degrees"), {"source.yaml:5: unit is 'degrees': expected one of rad, deg, raw"}},
       {name, with("unit: deg", "units: deg"), {"source.yaml:5: key is 'units': expected one of name, origin"}},
       {name, with("unit: deg", "unit: deg\nunit: deg"), {"source.yaml:6: key is 'unit'", "once"}},
       {name, with("joint: I_MCP", "joint: I_CMC"), {"source.yaml:7: unknown channel: joint is 'I_CMC'", "T_ROT"}},
@@ -231,7 +233,8 @@ TEST(Source, AbsentFilesAreNamed) {
 
 TEST(Summarize, RangesRatesStuckChannelsAndLabels) {
   const Files files("data/csv/b.csv", "t,index_base,I_PIP,pressure\n0,-180,7,0\n1,0,7,0\n");
-  const Summary summary = summarize(files.read().demonstrations);
+  Summary summary;
+  for (const auto& recording : files.read()) add(summary, recording);
   EXPECT_EQ(summary.recordings, 2);
   EXPECT_EQ(summary.samples, 5);
   EXPECT_NEAR(summary.duration, 1.3, 1e-12);

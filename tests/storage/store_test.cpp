@@ -26,7 +26,7 @@ TEST(Store, RandomRecordsComeBackBitForBit) {
   EXPECT_TRUE(again.check().empty());
 }
 
-TEST(Store, LargeArraysAreCompressedAndComeBack) {
+TEST(Store, LargeArraysComeBack) {
   const TemporaryDirectory directory;
   Record record{"document", "large", {}, {}};
   Eigen::MatrixXd tall = Eigen::MatrixXd::Zero(300000, 3);
@@ -36,7 +36,6 @@ TEST(Store, LargeArraysAreCompressedAndComeBack) {
   record.fields["long"] = Eigen::VectorXd(Eigen::VectorXd::Random(1000));
   Store store(directory / "store", true);
   EXPECT_TRUE(same(store.read(store.commit({record}).front()), record));
-  EXPECT_LT(fs::file_size(store.directory() / only_batch(store.directory())), std::size_t{8} * 3 * 300000);
 }
 
 TEST(Store, ListsInOrderOfCommitAndByKind) {
@@ -182,23 +181,23 @@ TEST(Store, IndexIsRebuiltWhenAbsentDamagedOrOld) {
   const fs::path path = directory / "store";
   Store store(path, true);
   store.commit({small_record(1)});
-  const std::string old = slurp(path / "index.json");
+  const std::string old = slurp(path / "index.bin");
   store.commit({small_record(2), small_record(3)});
-  const std::string index = slurp(path / "index.json");
+  const std::string index = slurp(path / "index.bin");
   std::string renamed = index;
   renamed.replace(renamed.find("record 2"), 8, "record 7");  // valid JSON with another name
   const std::string emptied = "{\"schema_version\": 1, \"entries\": []}";
   for (const std::string& text : {old, std::string(), index.substr(0, index.size() / 2), renamed, emptied,
                                   std::string("[]"), std::string("\xFF\x00", 2)}) {
-    spill(path / "index.json", text);
+    spill(path / "index.bin", text);
     const Store again(path, false);
     ASSERT_EQ(again.list().size(), 3U) << text;
     EXPECT_EQ(again.list()[1].name, "record 2");
-    EXPECT_EQ(slurp(path / "index.json"), index);
+    EXPECT_EQ(slurp(path / "index.bin"), index);
   }
-  fs::remove(path / "index.json");
+  fs::remove(path / "index.bin");
   EXPECT_EQ(Store(path, false).list().size(), 3U);
-  EXPECT_EQ(slurp(path / "index.json"), index);
+  EXPECT_EQ(slurp(path / "index.bin"), index);
 }
 
 TEST(Store, NewerSchemaIsRefusedWithASentence) {

@@ -19,20 +19,21 @@ TEST(WestR2g, DescriptionLoads) {
 
 TEST(WestR2g, AllRecordings) {
   if (!fs::exists(kData)) GTEST_SKIP() << kData << " is absent";
-  const SourceReading reading = read_source({kData}, load_source(kSource));
-  ASSERT_EQ(reading.demonstrations.size(), 100U);
-  const Summary summary = summarize(reading.demonstrations);
+  const std::vector<Recording> reading = read_source({kData}, load_source(kSource));
+  ASSERT_EQ(reading.size(), 100U);
+  Summary summary;
+  for (const auto& recording : reading) add(summary, recording);
   EXPECT_EQ(summary.recordings_per_label.at("object").size(), 5U);
   for (const auto& [object, count] : summary.recordings_per_label.at("object")) EXPECT_EQ(count, 20) << object;
   for (const auto& [subject, count] : summary.recordings_per_label.at("subject")) EXPECT_EQ(count, 20) << subject;
   EXPECT_NEAR(summary.lowest_rate, 50.0, 1e-9);
   EXPECT_NEAR(summary.highest_rate, 50.0, 1e-9);
-  for (const auto& report : reading.files) {
+  for (const auto& [demonstration, report] : reading) {
     EXPECT_NEAR(report.trimmed_start + report.trimmed_end + 0.02 * (report.samples - 1), report.duration, 1e-9);
   }
   // The signs of the description: fingers bend and the thumb opposes from the first to the last sample, on average.
   std::map<std::string, double> change;
-  for (const auto& demonstration : reading.demonstrations) {
+  for (const auto& [demonstration, report] : reading) {
     const auto last = demonstration.q_h.rows() - 1;
     for (std::size_t j = 0; j < demonstration.joint_names.size(); ++j) {
       const auto column = static_cast<Eigen::Index>(j);
@@ -48,10 +49,10 @@ TEST(WestR2g, AllRecordings) {
   const TemporaryDirectory directory;
   Store store(directory / "store", true);
   std::vector<Record> records;
-  for (const auto& demonstration : reading.demonstrations) records.push_back(encode(demonstration, {}));
+  for (const auto& recording : reading) records.push_back(encode(recording.demonstration, {}));
   const auto ids = store.commit(records);
   for (std::size_t i = 0; i < ids.size(); ++i) {
-    EXPECT_EQ(decode_demonstration(store.read(ids[i])).q_h, reading.demonstrations[i].q_h);
+    EXPECT_EQ(decode_demonstration(store.read(ids[i])).q_h, reading[i].demonstration.q_h);
   }
 }
 

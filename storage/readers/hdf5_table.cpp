@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include <hdf5.h>
+
+#include <algorithm>
+#include <charconv>
+#include <limits>
+#include <set>
+#include <span>
+
+#include "core/require.hpp"
+#include "storage/hdf5_calls.hpp"
+#include "storage/hdf5_wrappers.hpp"
+#include "storage/posix_file.hpp"
+#include "storage/readers/csv.hpp"
+#include "storage/readers/table.hpp"
+
+namespace opponens::storage {
+namespace {
+
+namespace fs = std::filesystem;
+using hdf5::Handle;
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// "obs/q:3" is column 3 of the dataset obs/q; without a number, its only column.
+struct ColumnPath {
+  std::string dataset;
+  std::size_t column = 1;
+  bool numbered = false;
+};
+
+ColumnPath parse_path(const std::string& name, const fs::path& file) {
+  const std::size_t colon = name.rfind(':');
+  if (colon == std::string::npos) return {name, 1, false};
+  ColumnPath path{name.substr(0, colon), 0, true};
+  const char* const end = name.data() + name.size();
+  const auto [rest, error] = std::from_chars(name.data() + colon + 1, end, path.column);
+  if (error != std::errc{} || rest != end || path.column == 0) {
+    throw_input(file, 0, "column", name, "dataset:number, numbers from 1");
+  }
+  return path;
+}
+
+/// Whether numbers are stored as machines have them. HDF5 can describe others, and one flipped bit of a description
+/// (the bias of an exponent, say) makes other numbers of the same bytes.
+bool is_standard(hid_t type) {
+  for (const hid_t standard :
+       {H5T_IEEE_F64LE, H5T_IEEE_F64BE, H5T_IEEE_F32LE, H5T_IEEE_F32BE, H5T_STD_I8LE,  H5T_STD_U8LE,  H5T_STD_I8BE,
+        H5T_STD_U8BE,   H5T_STD_I16LE,  H5T_STD_U16LE,  H5T_STD_I16BE,  H5T_STD_U16BE, H5T_STD_I32LE, H5T_STD_U32LE,
+        H5T_STD_I32BE,  H5T_STD_U32BE,  H5T_STD_I64LE,  H5T_STD_U64LE,  H5T_STD_I64BE, H5T_STD_U64BE}) {
+    if (H5Tequal(type, standard) > 0) return true;
+  }
+  return false;
+}
+
+/// A dataset of numbers of rank 1 or 2 as doubles.
+RowMajor read_numbers(const Handle& group, const std::string& name) {
+  const Handle dataset(
+      hdf5::checked(H5Dopen2(group.id(), name.c_str(), H5P_DEFAULT), group.id(), name, "open the dataset"), H5Dclose);
+  const Handle type(hdf5::checked(H5Dget_type(dataset.id()), group.id(), name, "read the type"), H5Tclose);
+  const Handle space(hdf5::checked(H5Dget_space(dataset.id()), group.id(), name, "read the shape"), H5Sclose);
+  const auto shape = hdf5::shape_of(space, group.id(), name);
+  if (!is_standard(type.id()) || shape.empty() || shape.size() > 2) {
+    hdf5::fail(group.id(), name, "read the dataset", "it is not IEEE floats or integers of rank 1 or 2");
+  }
+  const std::uint64_t columns = shape.size() == 2 ? shape[1] : 1;
+  constexpr std::uint64_t kMost = std::uint64_t{1} << 28;
+  if (shape[0] > kMost || columns > kMost || shape[0] * columns > kMost) {
+    hdf5::fail(group.id(), name, "read the dataset", "it has more than 268 million numbers");
+  }
+  // What the file does not hold shall not pass for numbers.
+  RowMajor values = RowMajor::Constant(static_cast<Eigen::Index>(shape[0]), static_cast<Eigen::Index>(columns),
+                                       std::numeric_limits<double>::quiet_NaN());
+  if (values.size() == 0) return values;
+  hdf5::checked(H5Dread(dataset.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), group.id(),
+                name, "read the dataset");
+  return values;
+}
+
+Table read_group(const Handle& group, const fs::path& file, const SourceDescription& source) {
+  std::map<std::string, RowMajor> datasets;
+  std::vector<std::string> names = source.time.columns;
+  for (const auto& channel : source.channels) names.push_back(channel.column);
+  std::vector<Eigen::VectorXd> columns;
+  for (const auto& name : names) {
+    const ColumnPath path = parse_path(name, file);
+    auto found = datasets.find(path.dataset);
+    if (found == datasets.end()) found = datasets.emplace(path.dataset, read_numbers(group, path.dataset)).first;
+    const RowMajor& values = found->second;
+    const auto width = static_cast<std::size_t>(values.cols());
+    if (path.column > width || (!path.numbered && width != 1)) {
+      throw_input(file, 0, "column", name, "one of the " + std::to_string(width) + " columns of the dataset");
+    }
+    columns.emplace_back(values.col(static_cast<Eigen::Index>(path.column - 1)));
+    if (columns.back().size() != columns.front().size()) {
+      throw_input(file, 0, "number of rows of '" + name + "'", std::to_string(columns.back().size()),
+                  std::to_string(columns.front().size()) + " as in '" + names.front() + "'");
+    }
+  }
+  Table table;
+  table.width = columns.size();
+  for (Eigen::Index row = 0; row < columns.front().size(); ++row) {
+    for (const auto& column : columns) table.values.push_back(column(row));
+  }
+  return table;
+}
+
+std::string as_text(const Field& value) {
+  if (const auto* text = std::get_if<std::string>(&value)) return *text;
+  if (const auto* number = std::get_if<std::int64_t>(&value)) return std::to_string(*number);
+  return {};
+}
+
+/// Attributes that labels ask for; others may be of any kind.
+void add_attributes(const Handle& group, const SourceDescription& source, Table& table) {
+  const std::vector<std::string> there = hdf5::attributes(group);
+  for (const auto& [label, fact] : source.labels) {
+    if (!std::binary_search(there.begin(), there.end(), fact)) continue;
+    const std::string text = as_text(hdf5::read_attribute(group, fact));
+    if (!text.empty()) table.facts[fact] = text;
+  }
+}
+
+}  // namespace
+
+std::vector<Table> read_hdf5_tables(const fs::path& file, const SourceDescription& source) {
+  const std::string bytes = read_file(file);
+  const Handle root = hdf5::open_in_memory(std::as_bytes(std::span(bytes)), file.filename().string());
+  std::vector<Table> tables;
+  if (source.table.group.empty()) {
+    tables.push_back(read_group(root, file, source));
+    add_attributes(root, source, tables.back());
+    return tables;
+  }
+  const Handle parent = hdf5::open_group(root, source.table.group);
+  for (const auto& name : hdf5::links(parent)) {
+    const Handle group = hdf5::open_group(parent, name);
+    tables.push_back(read_group(group, file, source));
+    tables.back().part = name;
+    tables.back().facts["group"] = name;
+    add_attributes(group, source, tables.back());
+  }
+  if (tables.empty()) throw_input(file, 0, "number of groups in " + source.table.group, "0", "one per recording");
+  return tables;
+}
+
+}  // namespace opponens::storage

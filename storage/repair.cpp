@@ -1,0 +1,153 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "storage/repair.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <optional>
+#include <unordered_set>
+#include <utility>
+
+#include "core/require.hpp"
+#include "storage/batch_file.hpp"
+#include "storage/catalog.hpp"
+#include "storage/contents.hpp"
+#include "storage/posix_file.hpp"
+
+namespace opponens::storage {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The first thing wrong with a file.
+std::optional<std::string> damage_of(const fs::path& path) {
+  try {
+    const std::vector<std::string> sentences = BatchReader(path).check();
+    return sentences.empty() ? std::nullopt : std::optional(sentences.front());
+  } catch (const NewerSchemaError&) {
+    throw;
+  } catch (const StorageError& error) {
+    return error.what();
+  }
+}
+
+std::vector<IndexEntry> entries_for(const std::vector<Record>& records) {
+  std::vector<IndexEntry> entries;
+  for (const auto& record : records) {
+    entries.push_back({content_hash(record), record.kind, record.name, {}, record.provenance.inputs});
+  }
+  return entries;
+}
+
+/// A new file of the same number with these objects; its name.
+std::string rewrite(const fs::path& directory, const std::string& damaged, const std::vector<Record>& records,
+                    const std::vector<IndexEntry>& entries) {
+  std::vector<const Record*> pointers;
+  std::vector<std::string> ids;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    pointers.push_back(&records[i]);
+    ids.push_back(entries[i].id);
+  }
+  const auto bytes = encode_batch(pointers, ids);
+  const std::string name = batch_file_name(static_cast<std::size_t>(batch_number(damaged)), bytes);
+  const fs::path temporary = directory / (".tmp-" + std::to_string(::getpid()) + "-" + name);
+  write_new_file(temporary, bytes, Durable::yes);
+  rename_file(temporary, directory / name);
+  sync_directory(directory);
+  return name;
+}
+
+void set_aside(const fs::path& directory, const std::string& file) {
+  const fs::path folder = directory / kDamagedFolder;
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw InputError(folder.string() + ": cannot make the folder: " + error.message());
+  fs::path place = folder / file;
+  for (int i = 2; fs::exists(place); ++i) place = folder / (file + "." + std::to_string(i));
+  rename_file(directory / file, place);
+  sync_directory(folder);
+  sync_directory(directory);
+}
+
+class Repair {
+ public:
+  Repair(fs::path directory, bool dry_run) : directory_(std::move(directory)), dry_run_(dry_run) {
+    for (const auto& name : directory_entries(directory_)) {
+      if (batch_number(name) >= 0) files_.push_back(name);
+    }
+    std::stable_sort(files_.begin(), files_.end(),
+                     [](const auto& a, const auto& b) { return batch_number(a) < batch_number(b); });
+  }
+
+  RepairReport run() {
+    const Catalog::Changes known = catalog_.load(directory_, files_);
+    for (const auto& gone : known.gone) {
+      report_.files.push_back({gone.file, "the file is missing", {}, gone.entries, true});
+    }
+    for (const auto& file : files_) look_at(file, catalog_.entries(file));
+    after_.arrange(kept_);
+    for (auto& file : report_.files) {
+      std::erase_if(file.lost, [this](const IndexEntry& entry) { return after_.contains(entry.id); });
+    }
+    find_dangling();
+    if (!dry_run_ && !report_.files.empty()) replace_index();
+    return std::move(report_);
+  }
+
+ private:
+  void look_at(const std::string& file, const std::optional<std::vector<IndexEntry>>& known) {
+    const std::optional<std::string> reason = damage_of(directory_ / file);
+    if (!reason) {
+      after_.append(file, known ? *known : BatchReader(directory_ / file).entries());
+      kept_.push_back(file);
+      return;
+    }
+    const std::vector<Record> records = salvage(ReadOnlyFile(directory_ / file));
+    DamagedFile damaged{file, *reason, entries_for(records), known.value_or(std::vector<IndexEntry>()),
+                        known.has_value()};
+    std::string replacement = file + " rewritten";
+    if (!records.empty() && !dry_run_) replacement = rewrite(directory_, file, records, damaged.saved);
+    if (!records.empty() && std::find(kept_.begin(), kept_.end(), replacement) == kept_.end() &&
+        std::find(files_.begin(), files_.end(), replacement) == files_.end()) {
+      after_.append(replacement, damaged.saved);
+      kept_.push_back(replacement);
+    }
+    if (!dry_run_) set_aside(directory_, file);
+    report_.files.push_back(std::move(damaged));
+  }
+
+  void find_dangling() {
+    std::unordered_set<std::string> present;
+    const std::vector<IndexEntry> entries = after_.list("");
+    for (const auto& entry : entries) present.insert(entry.id);
+    for (const auto& entry : entries) {
+      for (const auto& input : entry.inputs) {
+        if (!present.contains(input)) report_.dangling.push_back({entry, input});
+      }
+    }
+  }
+
+  void replace_index() {
+    std::error_code ignored;
+    fs::remove(directory_ / kIndexName, ignored);
+    after_.save(directory_);
+  }
+
+  fs::path directory_;
+  bool dry_run_;
+  std::vector<std::string> files_;
+  Catalog catalog_;                // as the index tells
+  Catalog after_;                  // as it is (or would be) afterwards
+  std::vector<std::string> kept_;  // files of after_
+  RepairReport report_;
+};
+
+}  // namespace
+
+RepairReport repair(const fs::path& directory, bool dry_run) {
+  const DirectoryLock lock(directory, DirectoryLock::Wait::yes);
+  return Repair(directory, dry_run).run();
+}
+
+}  // namespace opponens::storage
