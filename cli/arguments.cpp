@@ -218,11 +218,12 @@ void add_commands(Builder& add) {
   add.command<PlanOptions>("plan", "Plan a hand-arm path to one of the grasps", plan, declare_plan);
   add.command<VerifyOptions>("verify", "Check grasps and paths again by code of its own, all else by hash", verify,
                              [](CLI::App& app, VerifyOptions& options) { add_store(app, options.common); });
-  add.command<ReportOptions>("report", "Write one HTML file about what is stored", report,
-                             [](CLI::App& app, ReportOptions& options) {
-                               add_store(app, options.common);
-                               app.add_option("--out", options.out, "File to write")->capture_default_str();
-                             });
+  add.command<ReportOptions>(
+      "report", "Write one HTML file about what is stored", report, [](CLI::App& app, ReportOptions& options) {
+        add_store(app, options.common);
+        app.add_option("--out", options.out, "File to write")->capture_default_str();
+        app.add_option("--svg", options.svg, "Folder for every picture of the report as an SVG file of its own");
+      });
   add.command<ShowOptions>("show", "List a store, or print one object of it", show,
                            [](CLI::App& app, ShowOptions& options) {
                              declare_show(app, options);

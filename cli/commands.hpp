@@ -86,6 +86,7 @@ struct VerifyOptions {
 struct ReportOptions {
   Common common{};
   std::filesystem::path out = "report.html";
+  std::filesystem::path svg{};  ///< folder for the pictures; empty: none are written
 };
 struct ShowOptions {
   Common common{};
