@@ -21,8 +21,7 @@ namespace {
 using namespace opponens::report;
 
 std::string group_label(const Demonstration& motion, const std::string& group_by) {
-  const auto found = motion.labels.find(group_by);
-  return found == motion.labels.end() ? "(no " + group_by + ")" : found->second;
+  return analysis::group_of(motion, group_by).value_or("(no " + group_by + ")");
 }
 
 void count_motion(const Demonstration& motion, const std::string& group_by,
