@@ -193,8 +193,8 @@ TransitionSettings transition_settings(const AnalysisSettings& settings) {
 Result<Analysis> analyze(const RecordingSource& source, const AnalysisSettings& settings, const Reading& reading) {
   validate(settings);
   if (source.count == 0) return failure(FailureCode::invalid_input, "no recordings to analyze");
-  const Reading first{reading.threads, [&](std::size_t done, std::size_t total) {
-                        if (reading.progress) reading.progress(done, 2 * total);
+  const Reading first{reading.threads, [&](std::size_t done, std::size_t) {
+                        if (reading.progress) reading.progress(done, 2 * source.count);
                       }};
   Result<Movements> found = read_movements(source, settings, first);
   if (!found) return tl::make_unexpected(found.error());
@@ -203,8 +203,8 @@ Result<Analysis> analyze(const RecordingSource& source, const AnalysisSettings& 
     if (const auto failed = learn(group, *found, settings, reading.threads)) return tl::make_unexpected(*failed);
   }
   for (Movement& movement : found->movements) movement.before = movement.after = {};
-  const Reading second{reading.threads, [&](std::size_t done, std::size_t total) {
-                         if (reading.progress) reading.progress(total + done, 2 * total);
+  const Reading second{reading.threads, [&](std::size_t done, std::size_t) {
+                         if (reading.progress) reading.progress(source.count + done, 2 * source.count);
                        }};
   count_coverage(groups, *found, settings.order, source, second);
 
