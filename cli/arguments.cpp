@@ -91,6 +91,7 @@ void declare_analyze(CLI::App& app, AnalyzeOptions& options) {
   const CLI::Range fraction(1e-6, 0.999999);
   add_store(app, options.common);
   add_seed(app, options.common.seed);
+  add_threads(app, options.common.threads);
   app.add_option("--alpha", options.alpha, "Share of configurations left outside a box")
       ->check(fraction)
       ->capture_default_str();
