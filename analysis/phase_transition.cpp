@@ -6,8 +6,6 @@
 #include <cmath>
 #include <numbers>
 
-#include <Eigen/Cholesky>
-
 #include "analysis/statistics.hpp"
 #include "analysis/subspace.hpp"
 #include "core/require.hpp"
@@ -15,52 +13,114 @@
 namespace opponens::analysis {
 namespace {
 
-/// log|S| and, when asked for, d'S^-1 d, reusing one factorisation's memory over all splits.
-class SplitCosts {
+/// A Cholesky factor in memory that all splits share, and what is asked of it. Columns of the lower triangle.
+class Factor {
  public:
-  explicit SplitCosts(Eigen::Index n) : factor_(n) {}
+  explicit Factor(Eigen::Index n) : l_(n, n), y_(n) {}
 
-  bool factorise(const Eigen::MatrixXd& s) {
-    factor_.compute(s);
-    return factor_.info() == Eigen::Success && (factor_.matrixLLT().diagonal().array() > 0.0).all();
+  Eigen::MatrixXd& matrix() { return l_; }  ///< write the lower triangle here, then factorise()
+
+  /// False when the matrix is not positive definite; the factor is then of no use.
+  bool factorise() {
+    const Eigen::Index n = l_.cols();
+    log_determinant_ = 0.0;
+    double product = 1.0;  // of pivots whose logarithm is still to be taken: one logarithm for many
+    for (Eigen::Index j = 0; j < n; ++j) {
+      double* column = l_.col(j).data();
+      for (Eigen::Index k = 0; k < j; ++k) subtract(column, l_(j, k), l_.col(k).data(), j, n);
+      const double pivot = column[j];
+      if (!(pivot > 0.0)) return false;
+      product *= pivot;
+      if (!(product > kSmallProduct && product < kLargeProduct)) {
+        log_determinant_ += std::log(product / pivot) + std::log(pivot);
+        product = 1.0;
+      }
+      const double inverse = 1.0 / std::sqrt(pivot);
+      for (Eigen::Index i = j; i < n; ++i) column[i] *= inverse;
+    }
+    log_determinant_ += std::log(product);
+    return true;
   }
-  double log_determinant() const { return 2.0 * factor_.matrixLLT().diagonal().array().log().sum(); }
-  double mahalanobis(const Eigen::VectorXd& d) const { return factor_.matrixL().solve(d).squaredNorm(); }
+  double log_determinant() const { return log_determinant_; }
+  double mahalanobis(const Eigen::VectorXd& d) {
+    const Eigen::Index n = l_.cols();
+    y_ = d;
+    for (Eigen::Index j = 0; j < n; ++j) {
+      y_[j] /= l_(j, j);
+      subtract(y_.data(), y_[j], l_.col(j).data(), j + 1, n);
+    }
+    return y_.squaredNorm();
+  }
 
  private:
-  Eigen::LLT<Eigen::MatrixXd> factor_;
+  static constexpr double kSmallProduct = 1e-100;
+  static constexpr double kLargeProduct = 1e100;
+
+  static void subtract(double* __restrict to, double factor, const double* __restrict from, Eigen::Index begin,
+                       Eigen::Index end) {
+    for (Eigen::Index i = begin; i < end; ++i) to[i] -= factor * from[i];
+  }
+
+  Eigen::MatrixXd l_;
+  Eigen::VectorXd y_;
+  double log_determinant_ = 0.0;
 };
 
-/// Moments of the samples [0, t) and [t, T) as t grows, of rows centred on the whole recording's mean.
+/// Moments of the samples [0, t) and [t, T) as t grows, of rows centred on the whole recording's mean. Lower triangles.
 class PrefixMoments {
  public:
-  explicit PrefixMoments(const Eigen::MatrixXd& centred)
-      : total_(centred.transpose() * centred),
-        total_sum_(centred.colwise().sum().transpose()),
-        before_(Eigen::MatrixXd::Zero(centred.cols(), centred.cols())),
-        before_sum_(Eigen::VectorXd::Zero(centred.cols())),
-        rows_(static_cast<double>(centred.rows())) {}
+  /// x: [n x T], a sample per column.
+  explicit PrefixMoments(const Eigen::MatrixXd& x)
+      : total_(Eigen::MatrixXd::Zero(x.rows(), x.rows())),
+        total_sum_(x.rowwise().sum()),
+        before_(total_),
+        before_sum_(Eigen::VectorXd::Zero(x.rows())),
+        mean_before_(x.rows()),
+        mean_after_(x.rows()),
+        rows_(static_cast<double>(x.cols())) {
+    for (Eigen::Index t = 0; t < x.cols(); ++t) add_square(total_, x.col(t));
+  }
 
   void add(const Eigen::Ref<const Eigen::VectorXd>& x) {
-    before_.noalias() += x * x.transpose();
+    add_square(before_, x);
     before_sum_ += x;
     count_ += 1.0;
   }
   double count_before() const { return count_; }
   double count_after() const { return rows_ - count_; }
-  void split(Eigen::MatrixXd& before, Eigen::MatrixXd& after, Eigen::VectorXd& difference) const {
-    const Eigen::VectorXd mean_before = before_sum_ / count_before();
-    const Eigen::VectorXd mean_after = (total_sum_ - before_sum_) / count_after();
-    before.noalias() = before_ / count_before() - mean_before * mean_before.transpose();
-    after.noalias() = (total_ - before_) / count_after() - mean_after * mean_after.transpose();
-    difference = mean_before - mean_after;
+  /// The two covariances and their sum, each with the ridge on its diagonal, and the difference of the means.
+  void split(double ridge, Eigen::MatrixXd& before, Eigen::MatrixXd& after, Eigen::MatrixXd& sum,
+             Eigen::VectorXd& difference) {
+    const double share_before = 1.0 / count_before();
+    const double share_after = 1.0 / count_after();
+    mean_before_ = before_sum_ * share_before;
+    mean_after_ = (total_sum_ - before_sum_) * share_after;
+    difference = mean_before_ - mean_after_;
+    const Eigen::Index n = mean_before_.size();
+    for (Eigen::Index j = 0; j < n; ++j) {
+      for (Eigen::Index i = j; i < n; ++i) {
+        const double one = before_(i, j) * share_before - mean_before_[i] * mean_before_[j];
+        const double other = (total_(i, j) - before_(i, j)) * share_after - mean_after_[i] * mean_after_[j];
+        before(i, j) = one;
+        after(i, j) = other;
+        sum(i, j) = one + other;
+      }
+      for (Eigen::MatrixXd* covariance : {&before, &after, &sum}) (*covariance)(j, j) += ridge;
+    }
   }
 
  private:
+  static void add_square(Eigen::MatrixXd& sum, const Eigen::Ref<const Eigen::VectorXd>& x) {
+    const Eigen::Index n = x.size();
+    for (Eigen::Index j = 0; j < n; ++j) sum.col(j).tail(n - j) += x[j] * x.tail(n - j);
+  }
+
   Eigen::MatrixXd total_;
   Eigen::VectorXd total_sum_;
   Eigen::MatrixXd before_;
   Eigen::VectorXd before_sum_;
+  Eigen::VectorXd mean_before_;
+  Eigen::VectorXd mean_after_;
   double rows_;
   double count_ = 0.0;
 };
@@ -87,26 +147,19 @@ bool fill_costs(const Eigen::MatrixXd& centred, const TransitionSettings& settin
       settings.normaliser == Normaliser::printed ? 1.0 + 2.0 * static_cast<double>(n) : static_cast<double>(n);
   const double constant = 0.5 * power * std::log(2.0 * std::numbers::pi);
   const Eigen::MatrixXd samples = centred.transpose();
-  PrefixMoments prefix(centred);
-  SplitCosts costs(n);
-  Eigen::MatrixXd before(n, n);
-  Eigen::MatrixXd after(n, n);
-  Eigen::MatrixXd s(n, n);
+  PrefixMoments prefix(samples);
+  Factor sum(n);
+  Factor before(n);
+  Factor after(n);
   Eigen::VectorXd difference(n);
   for (Eigen::Index i = 0; i < curves.first - 1; ++i) prefix.add(samples.col(i));
   for (Eigen::Index i = 0; i < curves.log_likeness.size(); ++i) {
     prefix.add(samples.col(curves.first + i - 1));
-    prefix.split(before, after, difference);
-    s = before + after;
-    s.diagonal().array() += ridge;
-    if (!costs.factorise(s)) return false;
-    curves.log_likeness[i] = -0.5 * (costs.mahalanobis(difference) + costs.log_determinant()) - constant;
-    before.diagonal().array() += ridge;
-    after.diagonal().array() += ridge;
-    if (!costs.factorise(before)) return false;
-    curves.changepoint[i] = prefix.count_before() * costs.log_determinant();
-    if (!costs.factorise(after)) return false;
-    curves.changepoint[i] += prefix.count_after() * costs.log_determinant();
+    prefix.split(ridge, before.matrix(), after.matrix(), sum.matrix(), difference);
+    if (!sum.factorise() || !before.factorise() || !after.factorise()) return false;
+    curves.log_likeness[i] = -0.5 * (sum.mahalanobis(difference) + sum.log_determinant()) - constant;
+    curves.changepoint[i] =
+        prefix.count_before() * before.log_determinant() + prefix.count_after() * after.log_determinant();
   }
   return true;
 }

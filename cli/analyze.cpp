@@ -8,6 +8,7 @@
 #include "cli/json.hpp"
 #include "cli/resources.hpp"
 #include "cli/stored.hpp"
+#include "cli/world.hpp"
 #include "core/require.hpp"
 #include "robot/load_robot.hpp"
 #include "robot/robot_model.hpp"
@@ -29,32 +30,31 @@ const char* rule_name(analysis::TransitionRule rule) {
 }
 
 /// What is analysed: hand motions when there are any, else the glove recordings.
-std::vector<Stored<Demonstration>> input_motions(const storage::Store& store, const std::string& input,
-                                                 const Console& console) {
-  std::vector<Stored<Demonstration>> motions;
-  if (input != "glove") motions = hand_motions(store).newest;
-  if (motions.empty() && input != "hand") {
-    Motions recorded = recordings(store);
-    say_superseded(console, recorded.superseded);
-    motions = std::move(recorded.newest);
+std::vector<storage::IndexEntry> input_motions(const storage::Store& store, const std::string& input,
+                                               const Console& console) {
+  MotionEntries motions;
+  if (input != "glove") motions = newest_motions(store, kHandMotion);
+  if (motions.newest.empty() && input != "hand") {
+    motions = newest_motions(store, kRecording);
+    say_superseded(console, motions.superseded);
   }
-  if (motions.empty()) {
+  if (motions.newest.empty()) {
     throw InputError(store.directory().string() + ": nothing to analyse" +
                      (input == "hand" ? "; run: opponens retarget" : "; run: opponens simulate, or opponens ingest"));
   }
-  return motions;
+  return motions.newest;
 }
 
 /// Joint ranges for --space normalized: those of the hand that the motions were mapped to.
-analysis::JointRanges joint_ranges(const std::vector<Stored<Demonstration>>& motions) {
-  const auto& record = motions.front().record;
+analysis::JointRanges joint_ranges(const storage::Record& record) {
   if (record.kind != kHandMotion)
     throw InputError("--space normalized needs motions of a robot hand; run: opponens retarget");
-  const robot::RobotModel hand(robot::load_hand(find_file(parameters_of(record).at("hand"))));
+  const robot::RobotModel hand(hand_of_motion(record));
   return {hand.lower(), hand.upper()};
 }
 
-AnalysisSettings settings_from(const AnalyzeOptions& options, const std::vector<Stored<Demonstration>>& motions) {
+/// first: one of the motions.
+AnalysisSettings settings_from(const AnalyzeOptions& options, const storage::Store& store, const std::string& first) {
   AnalysisSettings settings;
   settings.alpha = options.alpha;
   settings.beta = options.beta;
@@ -66,7 +66,7 @@ AnalysisSettings settings_from(const AnalyzeOptions& options, const std::vector<
   } else if (options.transition == "changepoint") {
     settings.transition = analysis::TransitionRule::changepoint;
   }
-  if (options.space == "normalized") settings.normalize_by = joint_ranges(motions);
+  if (options.space == "normalized") settings.normalize_by = joint_ranges(store.read(first));
   return settings;
 }
 
@@ -158,27 +158,30 @@ Json parameters_json(const AnalyzeOptions& options) {
 
 int analyze(const AnalyzeOptions& options, const Console& console) {
   storage::Store store(options.common.store, false);
-  const RunLog log(store, "analyze", 1);
+  const int threads = thread_count(options.common.threads);
+  const RunLog log(store, "analyze", threads);
   const auto motions = input_motions(store, options.input, console);
-  const AnalysisSettings settings = settings_from(options, motions);
-  std::vector<Demonstration> demonstrations;
+  const AnalysisSettings settings = settings_from(options, store, motions.front().id);
   std::vector<std::string> inputs;
-  for (const auto& motion : motions) {
-    demonstrations.push_back(motion.value);
-    inputs.push_back(motion.id);
-  }
-  const auto found = analysis::analyze(demonstrations, settings);
+  for (const auto& motion : motions) inputs.push_back(motion.id);
+  const analysis::RecordingSource source{
+      inputs.size(), [&](std::size_t i) { return storage::decode_demonstration(store.read(inputs[i])); }};
+  Progress progress(console, "analyze: recordings, each read twice");
+  const auto found = analysis::analyze(source, settings, {threads, [&](std::size_t done, std::size_t total) {
+                                                            progress.update(static_cast<std::int64_t>(done),
+                                                                            static_cast<std::int64_t>(total));
+                                                          }});
   if (!found) {
     Console::warn(found.error().detail);
     return found.error().code == FailureCode::invalid_input ? kInvalid : kNoAnswer;
   }
-  const Json result = analysis_json(*found, settings);
+  const std::string result = analysis_json(*found, settings).dump();
   auto record = storage::encode(found->synergies,
                                 provenance("analyze", inputs, {}, parameters_json(options), options.common.seed));
-  record.fields["analysis"] = result.dump();
+  record.fields["analysis"] = result;
   log.finish(store.commit({record}));
   say_groups(console, *found);
-  console.document(result.dump());
+  console.document(result);
   return kDone;
 }
 

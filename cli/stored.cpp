@@ -36,25 +36,17 @@ std::string utc_date(double seconds) {
   return text.data();
 }
 
+std::string source_of(const storage::Store& store, const storage::IndexEntry& entry) {
+  return text_field(store.read(entry.id), "label.source");
+}
+
 Motions motions_of(const storage::Store& store, const char* kind) {
-  std::map<std::string, std::size_t> age;  // by id, larger is newer
-  for (const auto& entry : store.list_as_produced(kind)) age.emplace(entry.id, age.size());
-  Motions motions;
-  std::map<std::pair<std::string, std::string>, std::size_t> places;  // source and recording -> place in newest
-  for (const auto& entry : store.list(kind)) {
+  const MotionEntries entries = newest_motions(store, kind);
+  Motions motions{{}, entries.superseded};
+  for (const auto& entry : entries.newest) {
     storage::Record record = store.read(entry.id);
     Demonstration value = storage::decode_demonstration(record);
-    const auto source = value.labels.find("source");
-    const std::string name = source == value.labels.end() ? std::string() : source->second;
-    Stored<Demonstration> motion{entry.id, std::move(record), std::move(value)};
-    const auto [place, first] = places.try_emplace({name, motion.value.id}, motions.newest.size());
-    if (first) {
-      motions.newest.push_back(std::move(motion));
-      continue;
-    }
-    ++motions.superseded;
-    Stored<Demonstration>& other = motions.newest[place->second];
-    if (age.at(motion.id) > age.at(other.id)) other = std::move(motion);
+    motions.newest.push_back({entry.id, std::move(record), std::move(value)});
   }
   return motions;
 }
@@ -77,6 +69,33 @@ storage::Provenance provenance(const std::string& command, std::vector<std::stri
 void say_superseded(const Console& console, int superseded) {
   if (superseded == 0) return;
   console.say(std::to_string(superseded) + " recordings are superseded by newer ones of the same source and name");
+}
+
+MotionEntries newest_motions(const storage::Store& store, const char* kind) {
+  const auto entries = store.list(kind);
+  std::map<std::string, int> uses;  // of a name
+  for (const auto& entry : entries) ++uses[entry.name];
+  MotionEntries motions;
+  if (uses.size() == entries.size()) {
+    motions.newest = entries;
+    return motions;
+  }
+  std::map<std::string, std::size_t> age;  // by id, larger is newer
+  for (const auto& entry : store.list_as_produced(kind)) age.emplace(entry.id, age.size());
+  std::map<std::pair<std::string, std::string>, std::size_t> places;  // source and recording -> place in newest
+  for (const auto& entry : entries) {
+    if (uses.at(entry.name) > 1) {
+      const auto [place, first] = places.try_emplace({source_of(store, entry), entry.name}, motions.newest.size());
+      if (!first) {
+        ++motions.superseded;
+        storage::IndexEntry& other = motions.newest[place->second];
+        if (age.at(entry.id) > age.at(other.id)) other = entry;
+        continue;
+      }
+    }
+    motions.newest.push_back(entry);
+  }
+  return motions;
 }
 
 Motions recordings(const storage::Store& store) { return motions_of(store, kRecording); }

@@ -43,7 +43,15 @@ storage::Provenance provenance(const std::string& command, std::vector<std::stri
                                const std::vector<std::filesystem::path>& files, const nlohmann::json& parameters,
                                std::uint64_t seed);
 
-/// Motions by source and recording: of several with the same label "source" and the same id, the newest.
+/// The index entries of motions by source and recording: of several with the same label "source" and the same id, the
+/// newest. Only recordings whose id occurs more than once are read.
+struct MotionEntries {
+  std::vector<storage::IndexEntry> newest;  ///< in the order in which the first of each was stored
+  int superseded = 0;                       ///< older ones left out
+};
+MotionEntries newest_motions(const storage::Store& store, const char* kind);
+
+/// The same, all read. Motions by source and recording: of several with the same label "source" and the same id, the newest.
 struct Motions {
   std::vector<Stored<Demonstration>> newest;  ///< in the order in which the first of each was stored
   int superseded = 0;                         ///< older ones left out
