@@ -108,6 +108,17 @@ class Batches(unittest.TestCase):
             self.assertEqual(second["summary"][key], first["summary"][key])
         self.assertEqual(must("show", "--store", self.folder / "other")["objects"][0]["kind"], "hand_demonstration")
 
+    def test_postures_have_no_phases(self):
+        self.record(4, rows=30)
+        yaml = YAML.replace("{column: '1'}", "none").replace("[{column: '2', joint: I_MCP}]",
+                                                              "[{column: '1', joint: I_MCP}, {column: '2', joint: I_PIP}]")
+        (self.folder / "source.yaml").write_text(yaml)
+        must(*self.arguments())
+        code, _, err = run("analyze", "--store", self.store, "--group-by", "source")
+        self.assertEqual(code, 2)
+        self.assertIn("set of postures without time, which has no phases: expected --phase none", err)
+        must("analyze", "--store", self.store, "--group-by", "source", "--phase", "none")
+
     def test_foreign_files_that_are_none_are_refused(self):
         (self.folder / "data").mkdir()
         yaml = self.folder / "source.yaml"
