@@ -157,13 +157,6 @@ Json parameters_json(const AnalyzeOptions& options) {
           {"space", options.space},       {"phase", options.phase},       {"input", options.input}};
 }
 
-/// Postures are rows without time: they have no phases to be split into.
-void require_order(const Demonstration& motion) {
-  const auto kind = motion.labels.find("kind");
-  if (kind == motion.labels.end() || kind->second != storage::kPostures) return;
-  throw InputError(motion.id + " is a set of postures without time, which has no phases: expected --phase none");
-}
-
 }  // namespace
 
 int analyze(const AnalyzeOptions& options, const Console& console) {
@@ -174,12 +167,8 @@ int analyze(const AnalyzeOptions& options, const Console& console) {
   const AnalysisSettings settings = settings_from(options, store, motions.front().id);
   std::vector<std::string> inputs;
   for (const auto& motion : motions) inputs.push_back(motion.id);
-  const bool phases = settings.transition.has_value();
-  const analysis::RecordingSource source{inputs.size(), [&](std::size_t i) {
-                                           auto motion = storage::decode_demonstration(store.read(inputs[i]));
-                                           if (phases) require_order(motion);
-                                           return motion;
-                                         }};
+  const analysis::RecordingSource source{
+      inputs.size(), [&](std::size_t i) { return storage::decode_demonstration(store.read(inputs[i])); }};
   Progress progress(console, "analyze: recordings, each read twice");
   const auto found = analysis::analyze(source, settings, {threads, [&](std::size_t done, std::size_t total) {
                                                             progress.update(static_cast<std::int64_t>(done),

@@ -116,7 +116,7 @@ class Batches(unittest.TestCase):
         must(*self.arguments())
         code, _, err = run("analyze", "--store", self.store, "--group-by", "source")
         self.assertEqual(code, 2)
-        self.assertIn("set of postures without time, which has no phases: expected --phase none", err)
+        self.assertIn("holds postures without time: it has no phases to split", err)
         must("analyze", "--store", self.store, "--group-by", "source", "--phase", "none")
 
     def test_foreign_files_that_are_none_are_refused(self):
