@@ -47,7 +47,7 @@ std::vector<Demonstration> plain(int count, int samples = 120) {
   return result;
 }
 
-AnalysisSettings quick() {
+AnalysisSettings few_replicates() {
   AnalysisSettings settings;
   settings.replicates = 20;
   settings.min_window = 10;
@@ -76,7 +76,7 @@ TEST(Degenerate, ConstantAndDependentChannelsAreDroppedByName) {
     one.q_h.col(1).setConstant(0.4);
     one.q_h.col(3) = 0.5 * one.q_h.col(0) - 0.25 * one.q_h.col(2);
   }
-  const Analysis found = analyze(recordings, quick()).value();
+  const Analysis found = analyze(recordings, few_replicates()).value();
   expect_finite(found);
   for (std::size_t i = 0; i < found.groups.size(); ++i) {
     const SynergyGroup& group = i == 0 ? found.synergies.pre_grasp : found.synergies.grasp[i - 1];
@@ -109,7 +109,7 @@ TEST(Degenerate, FewerSamplesThanChannels) {
   ASSERT_FALSE(curves);
   EXPECT_EQ(curves.error().code, FailureCode::too_few_samples);
   const auto tiny = analyze(plain(1, 8), [] {
-    AnalysisSettings settings = quick();
+    AnalysisSettings settings = few_replicates();
     settings.min_window = 4;
     return settings;
   }());
@@ -118,7 +118,7 @@ TEST(Degenerate, FewerSamplesThanChannels) {
 }
 
 TEST(Degenerate, OneRecording) {
-  const Analysis found = analyze(plain(1), quick()).value();
+  const Analysis found = analyze(plain(1), few_replicates()).value();
   expect_finite(found);
   for (const GroupReport& group : found.groups) {
     EXPECT_TRUE(group.intervals.empty());
@@ -129,10 +129,10 @@ TEST(Degenerate, OneRecording) {
 TEST(Degenerate, AllSamplesEqual) {
   std::vector<Demonstration> recordings = plain(3);
   for (Demonstration& one : recordings) one.q_h.setConstant(0.3);
-  const auto split = analyze(recordings, quick());
+  const auto split = analyze(recordings, few_replicates());
   ASSERT_FALSE(split);
   EXPECT_EQ(split.error().code, FailureCode::degenerate);
-  AnalysisSettings whole = quick();
+  AnalysisSettings whole = few_replicates();
   whole.transition.reset();
   const auto all = analyze(recordings, whole);
   ASSERT_FALSE(all);
@@ -156,7 +156,7 @@ TEST(Degenerate, LargeMeanSmallSpread) {
   for (Demonstration& one : near) one.q_h *= 1e-3;
   std::vector<Demonstration> far = near;
   for (Demonstration& one : far) one.q_h.array() += 1e6;
-  AnalysisSettings fine = quick();
+  AnalysisSettings fine = few_replicates();
   fine.resolution = 1e-6;
   const Analysis expected = analyze(near, fine).value();
   const Analysis found = analyze(far, fine).value();
@@ -177,7 +177,7 @@ TEST(Degenerate, NotFiniteOrTooLarge) {
   for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
     std::vector<Demonstration> recordings = plain(3);
     recordings[1].q_h(17, 2) = bad;
-    const auto found = analyze(recordings, quick());
+    const auto found = analyze(recordings, few_replicates());
     ASSERT_FALSE(found);
     EXPECT_EQ(found.error().code, FailureCode::invalid_input);
     EXPECT_NE(found.error().detail.find(recordings[1].id), std::string::npos);
@@ -199,7 +199,7 @@ TEST(Degenerate, NotFiniteOrTooLarge) {
 TEST(Degenerate, AJointThatMovesInOneRecordingOnly) {
   std::vector<Demonstration> recordings = plain(5);
   for (std::size_t i = 1; i < recordings.size(); ++i) recordings[i].q_h.col(2).setConstant(0.1);
-  expect_finite(analyze(recordings, quick()).value());
+  expect_finite(analyze(recordings, few_replicates()).value());
 }
 
 }  // namespace
