@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/pca.hpp"
 
+#include <algorithm>
+
 #include <Eigen/Eigenvalues>
 
 #include "core/require.hpp"
@@ -36,7 +38,7 @@ Eigen::VectorXd cumulative_variance(const Eigen::VectorXd& variance) {
   double sum = 0.0;
   for (Eigen::Index i = 0; i < variance.size(); ++i) {
     sum += variance[i];
-    result[i] = sum / total;
+    result[i] = std::min(1.0, sum / total);  // rounding may exceed it
   }
   result[variance.size() - 1] = 1.0;
   return result;

@@ -30,9 +30,10 @@ class Factor {
       for (Eigen::Index k = 0; k < j; ++k) subtract(column, l_(j, k), l_.col(k).data(), j, n);
       const double pivot = column[j];
       if (!(pivot > 0.0)) return false;
-      product *= pivot;
-      if (!(product > kSmallProduct && product < kLargeProduct)) {
-        log_determinant_ += std::log(product / pivot) + std::log(pivot);
+      if (const double next = product * pivot; next > kSmallProduct && next < kLargeProduct) {
+        product = next;
+      } else {
+        log_determinant_ += std::log(product) + std::log(pivot);
         product = 1.0;
       }
       const double inverse = 1.0 / std::sqrt(pivot);
@@ -207,6 +208,7 @@ Transition transition(const Demonstration& demonstration, const TransitionCurves
   result.time_s = demonstration.time[result.index];
   const double begin = demonstration.time[0];
   const double end = demonstration.time[demonstration.time.size() - 1];
+  require(end > begin, "transition: recording " + demonstration.id + ": time does not increase");
   result.fraction = (result.time_s - begin) / (end - begin);
   result.method = rule;
   return result;

@@ -97,6 +97,56 @@ TEST(Analyze, OrderOfRecordingsDoesNotMatter) {
   EXPECT_TRUE(a.synergies.pre_grasp.basis.axes == b.synergies.pre_grasp.basis.axes);
 }
 
+void expect_equal(const Analysis& a, const Analysis& b) {
+  ASSERT_EQ(a.groups.size(), b.groups.size());
+  for (std::size_t i = 0; i < a.groups.size(); ++i) {
+    EXPECT_EQ(a.groups[i].cumulative_variance, b.groups[i].cumulative_variance);
+    EXPECT_EQ(a.groups[i].intervals[0].low, b.groups[i].intervals[0].low);
+    EXPECT_EQ(a.groups[i].coverage.full.in_sample, b.groups[i].coverage.full.in_sample);
+    EXPECT_EQ(a.groups[i].coverage.full.held_out, b.groups[i].coverage.full.held_out);
+    EXPECT_EQ(a.groups[i].coverage.kept.interval->high, b.groups[i].coverage.kept.interval->high);
+  }
+  ASSERT_EQ(a.transitions.size(), b.transitions.size());
+  for (std::size_t i = 0; i < a.transitions.size(); ++i) {
+    EXPECT_EQ(a.transitions[i].demonstration, b.transitions[i].demonstration);
+    EXPECT_EQ(a.transitions[i].likeness.index, b.transitions[i].likeness.index);
+  }
+  EXPECT_EQ(a.free_motion->covariance, b.free_motion->covariance);
+}
+
+TEST(Analyze, ThreadsDoNotMatterAndEveryRecordingIsReadInOrder) {
+  const Analysis one = analyze(recordings(), quick()).value();
+  for (const int threads : {1, 2, 5}) {
+    std::vector<std::size_t> read;
+    const RecordingSource source{recordings().size(), [&](std::size_t i) {
+                                   read.push_back(i);
+                                   return recordings()[i];
+                                 }};
+    std::size_t last = 0;
+    const Reading reading{threads, [&](std::size_t done, std::size_t) {
+                            EXPECT_GE(done, last);
+                            last = done;
+                          }};
+    expect_equal(analyze(source, quick(), reading).value(), one);
+    EXPECT_EQ(read.size(), 1u + 186u + 180u);  // the names of the joints; all; the movements again
+    EXPECT_TRUE(std::is_sorted(read.begin() + 1, read.begin() + 187));
+    EXPECT_TRUE(std::is_sorted(read.begin() + 187, read.end()));
+  }
+}
+
+TEST(Analyze, ProgressAndReadingMayThrow) {
+  struct Stop {};
+  const Reading stops{3, [](std::size_t done, std::size_t) {
+                        if (done == 200) throw Stop{};
+                      }};
+  EXPECT_THROW(static_cast<void>(analyze(source_of(recordings()), quick(), stops)), Stop);
+  const RecordingSource broken{recordings().size(), [](std::size_t i) {
+                                 if (i == 77) throw Stop{};
+                                 return recordings()[i];
+                               }};
+  EXPECT_THROW(static_cast<void>(analyze(broken, quick(), {3, {}})), Stop);
+}
+
 TEST(Analyze, NormalisedSpaceIsAnalysisOfNormalisedJoints) {
   const SimulationModel model = test::human_model();
   AnalysisSettings settings = quick();
