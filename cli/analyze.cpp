@@ -8,6 +8,7 @@
 #include "cli/json.hpp"
 #include "cli/resources.hpp"
 #include "cli/stored.hpp"
+#include "cli/world.hpp"
 #include "core/require.hpp"
 #include "robot/load_robot.hpp"
 #include "robot/robot_model.hpp"
@@ -48,7 +49,7 @@ std::vector<storage::IndexEntry> input_motions(const storage::Store& store, cons
 analysis::JointRanges joint_ranges(const storage::Record& record) {
   if (record.kind != kHandMotion)
     throw InputError("--space normalized needs motions of a robot hand; run: opponens retarget");
-  const robot::RobotModel hand(robot::load_hand(find_file(parameters_of(record).at("hand"))));
+  const robot::RobotModel hand(hand_of_motion(record));
   return {hand.lower(), hand.upper()};
 }
 

@@ -75,9 +75,16 @@ void declare_ingest(CLI::App& app, IngestOptions& options) {
 void declare_retarget(CLI::App& app, RetargetOptions& options) {
   add_store(app, options.common);
   app.add_option("--hand", options.hand, "hand.yaml of the robot hand")->capture_default_str();
-  app.add_option("--mapping", options.mapping, "paper: flexion joint to joint, abduction and thumb by fingertips")
-      ->check(CLI::IsMember({"paper"}))
+  app.add_option("--urdf", options.urdf, "URDF of the hand, in place of the one that the hand.yaml names");
+  app.add_option("--mapping", options.mapping,
+                 "joint: joint to joint; fingertip: all joints by fingertips; paper: flexion joint to joint, abduction "
+                 "and thumb by fingertips")
+      ->check(CLI::IsMember({"joint", "fingertip", "paper"}))
       ->capture_default_str();
+  app.add_option("--hand-length", options.hand_length,
+                 "Length of the wearer's hand, m, for recordings without a label hand_length; not with --mapping paper")
+      ->check(CLI::Range(0.1, 0.3));
+  add_threads(app, options.common.threads);
 }
 
 void declare_analyze(CLI::App& app, AnalyzeOptions& options) {
@@ -212,11 +219,12 @@ void add_commands(Builder& add) {
   add.command<PlanOptions>("plan", "Plan a hand-arm path to one of the grasps", plan, declare_plan);
   add.command<VerifyOptions>("verify", "Check grasps and paths again by code of its own, all else by hash", verify,
                              [](CLI::App& app, VerifyOptions& options) { add_store(app, options.common); });
-  add.command<ReportOptions>("report", "Write one HTML file about what is stored", report,
-                             [](CLI::App& app, ReportOptions& options) {
-                               add_store(app, options.common);
-                               app.add_option("--out", options.out, "File to write")->capture_default_str();
-                             });
+  add.command<ReportOptions>(
+      "report", "Write one HTML file about what is stored", report, [](CLI::App& app, ReportOptions& options) {
+        add_store(app, options.common);
+        app.add_option("--out", options.out, "File to write")->capture_default_str();
+        app.add_option("--svg", options.svg, "Folder for every picture of the report as an SVG file of its own");
+      });
   add.command<ShowOptions>("show", "List a store, or print one object of it", show,
                            [](CLI::App& app, ShowOptions& options) {
                              declare_show(app, options);

@@ -38,7 +38,9 @@ struct IngestOptions {
 struct RetargetOptions {
   Common common{};
   std::string hand = "models/ur5_allegro/allegro_right.yaml";
+  std::string urdf{};  ///< in place of the one that the hand.yaml names; empty: that one
   std::string mapping = "paper";
+  std::optional<double> hand_length{};  ///< m, of wearers whose recordings do not tell it
 };
 struct AnalyzeOptions {
   Common common{};
@@ -84,6 +86,7 @@ struct VerifyOptions {
 struct ReportOptions {
   Common common{};
   std::filesystem::path out = "report.html";
+  std::filesystem::path svg{};  ///< folder for the pictures; empty: none are written
 };
 struct ShowOptions {
   Common common{};

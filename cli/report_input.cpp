@@ -3,6 +3,7 @@
 #include "cli/report_input.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <set>
 
@@ -46,6 +47,31 @@ std::string origin_sentence(int simulated, int all) {
          " made by opponens simulate: no figure below is about people alone.";
 }
 
+/// Residuals per fingertip and shares of samples at a limit per joint, of the motions that were mapped alike.
+void add_mapping_quality(const std::vector<Stored<Demonstration>>& motions, DemonstrationPart& part) {
+  std::map<std::string, double> squares;
+  std::map<std::string, double> clamped;
+  double samples = 0.0;
+  for (const auto& motion : motions) {
+    const auto& fields = motion.record.fields;
+    if (!fields.contains("tip_names") || !fields.contains("clamped_share")) continue;
+    const auto count = static_cast<double>(motion.value.time.size());
+    const auto& names = std::get<std::vector<std::string>>(fields.at("tip_names"));
+    const auto& rms = std::get<Eigen::VectorXd>(fields.at("tip_rms"));
+    const auto& share = std::get<Eigen::VectorXd>(fields.at("clamped_share"));
+    for (Eigen::Index i = 0; i < rms.size(); ++i)
+      squares[names[static_cast<std::size_t>(i)]] += count * rms[i] * rms[i];
+    for (Eigen::Index i = 0; i < share.size(); ++i) {
+      clamped[motion.value.joint_names[static_cast<std::size_t>(i)]] += count * share[i];
+    }
+    samples += count;
+  }
+  for (const auto& [name, sum] : squares) part.tip_residuals.emplace_back(name, std::sqrt(sum / samples));
+  for (const auto& [name, sum] : clamped) {
+    if (sum > 0.0) part.clamped_shares.emplace_back(name, sum / samples);
+  }
+}
+
 DemonstrationPart demonstration_part(const std::vector<Stored<Demonstration>>& motions, const std::string& group_by) {
   DemonstrationPart part;
   part.grouped_by = group_by;
@@ -63,6 +89,7 @@ DemonstrationPart demonstration_part(const std::vector<Stored<Demonstration>>& m
     mapped += samples;
   }
   for (auto& [name, group] : groups) part.groups.push_back(std::move(group));
+  add_mapping_quality(motions, part);
   if (mapped > 0.0) {
     part.mapping = parameters_of(motions.front().record).value("mapping", "");
     part.tip_residual = std::sqrt(squares / mapped);
@@ -94,6 +121,33 @@ std::optional<TransitionCurves> example_curves(const Demonstration& motion) {
   return example;
 }
 
+/// The recordings at the quantiles 50, 10 and 90 % of how far the two rules lie apart.
+void add_typical_curves(const std::vector<Stored<Demonstration>>& motions, TransitionPart& part) {
+  std::vector<std::pair<double, std::string>> apart;
+  for (const auto& one : part.all) {
+    if (one.likeness && one.changepoint)
+      apart.emplace_back(std::abs(*one.likeness - *one.changepoint), one.demonstration);
+  }
+  if (apart.empty()) return;
+  std::sort(apart.begin(), apart.end());
+  std::set<std::string> drawn;
+  for (const double share : {0.5, 0.1, 0.9}) {
+    const auto& id = apart[static_cast<std::size_t>(std::lround(share * static_cast<double>(apart.size() - 1)))].second;
+    if (!drawn.insert(id).second) continue;
+    const auto motion =
+        std::find_if(motions.begin(), motions.end(), [&](const auto& one) { return one.value.id == id; });
+    auto curves = example_curves(motion->value);
+    if (!curves) continue;
+    if (part.example) {
+      part.others.push_back(std::move(*curves));
+    } else {
+      part.example = std::move(curves);
+    }
+  }
+  part.chosen_by =
+      "Drawn are the recordings at the median, the 10 % and the 90 % quantile of how far the two rules lie apart.";
+}
+
 TransitionPart transition_part(const std::vector<Stored<Demonstration>>& motions, const Json& found,
                                const std::string& method) {
   TransitionPart part;
@@ -106,11 +160,11 @@ TransitionPart transition_part(const std::vector<Stored<Demonstration>>& motions
   for (const auto& motion : motions) {
     const auto entry = by_id.find(motion.value.id);
     if (entry == by_id.end()) continue;
-    if (!part.example) part.example = example_curves(motion.value);
     entry->second.demonstration = motion.value.id;
     entry->second.known = known_fraction(motion.value);
     part.all.push_back(entry->second);
   }
+  add_typical_curves(motions, part);
   return part;
 }
 
@@ -245,6 +299,9 @@ ReportInput report_input(const storage::Store& store) {
   input.synergies = synergy_part(synergies, found);
   input.provenance = chain_of(store, synergies.id);
   add_world_and_results(store, synergies.id, input);
+  if (!input.hand && motions.front().record.kind == kHandMotion) {
+    input.hand.emplace(hand_of_motion(motions.front().record));
+  }
   return input;
 }
 

@@ -1,22 +1,30 @@
 // SPDX-FileCopyrightText: 2026 The opponens authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <array>
+#include <atomic>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <thread>
 
 #include "cli/commands.hpp"
 #include "cli/json.hpp"
 #include "cli/resources.hpp"
+#include "cli/retarget_totals.hpp"
 #include "cli/stored.hpp"
+#include "cli/world.hpp"
 #include "core/require.hpp"
-#include "robot/hand_mapping.hpp"
 #include "robot/load_robot.hpp"
+#include "robot/retarget.hpp"
 #include "storage/codec.hpp"
 
 namespace opponens::cli {
 namespace {
 
 constexpr const char* kHumanHand = "models/human_hand/human_hand.yaml";
+constexpr double kShortestHand = 0.1;  ///< m, of a wearer
+constexpr double kLongestHand = 0.3;   ///< m
 
 std::string label(const Demonstration& motion, const std::string& name) {
   const auto found = motion.labels.find(name);
@@ -68,78 +76,186 @@ std::vector<std::string> inputs_of(const std::string& recording, const Calibrati
   return inputs;
 }
 
-struct Residuals {
-  double squares = 0.0;
-  double largest = 0.0;
-  int clamped = 0;
-  int samples = 0;
+/// Length of the wearer's hand, m, where the label hand_length or the option tells it.
+std::optional<double> told_length(const Demonstration& motion, const RetargetOptions& options) {
+  const std::string text = label(motion, "hand_length");
+  if (text.empty()) return options.hand_length;
+  double length = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), length);
+  if (error != std::errc() || end != text.data() + text.size() || length < kShortestHand || length > kLongestHand) {
+    throw InputError("recording " + motion.id + ": label hand_length: expected metres between 0.1 and 0.3, found '" +
+                     text + "'");
+  }
+  return length;
+}
+
+/// All that every recording of one command shares.
+struct Task {
+  const RetargetOptions& options;
+  robot::RobotModel hand;
+  robot::RobotDescription human;  ///< of the reference size
+  robot::HandMapping mapping;
+  robot::RetargetSettings settings;
+  Calibrations calibrations;
 };
+
+robot::MappingKind mapping_kind(const std::string& name) {
+  if (name == "joint") return robot::MappingKind::joint;
+  return name == "fingertip" ? robot::MappingKind::fingertip : robot::MappingKind::paper;
+}
+
+Task make_task(const RetargetOptions& options, const std::vector<Stored<Demonstration>>& motions) {
+  const auto hand_file = find_file(options.hand);
+  Task task{options,
+            robot::RobotModel(load_hand_file(options.hand, options.urdf)),
+            robot::load_hand(find_file(kHumanHand)),
+            robot::load_hand_mapping(hand_file),
+            robot::default_settings(mapping_kind(options.mapping)),
+            {}};
+  const robot::RobotModel human(task.human);
+  task.calibrations = calibrate(motions, human);
+  if (options.mapping == "paper") {
+    if (options.hand_length) {
+      throw InputError("--hand-length: with --mapping paper the size of the human hand divides out; leave it out");
+    }
+    return task;
+  }
+  if (task.mapping.fingertips.empty()) {
+    if (options.mapping == "joint") return task;
+    throw InputError(hand_file.string() + ": mapping.fingertips is missing; --mapping fingertip needs it");
+  }
+  const auto alignment = robot::align_hands(human, task.hand, task.mapping);
+  if (!alignment) throw InputError(hand_file.string() + ": " + alignment.error().detail);
+  task.settings.alignment = *alignment;
+  return task;
+}
+
+Calibration calibration_of(const Demonstration& motion, const Task& task) {
+  const auto cluster = calibration_cluster(motion);
+  return cluster.empty() ? Calibration{identity(motion.joint_names), {}} : task.calibrations.at(cluster);
+}
+
+/// Maps every recording on the given number of threads; recordings that an interrupt left out are empty. The results do
+/// not depend on the number of threads.
+std::vector<std::optional<robot::Retargeted>> map_all(const std::vector<Stored<Demonstration>>& motions,
+                                                      const Task& task, int threads, const Console& console) {
+  std::vector<std::optional<Result<robot::Retargeted>>> mapped(motions.size());
+  std::map<double, robot::RobotModel> humans;  // by hand length
+  for (const auto& motion : motions) {
+    const double length = told_length(motion.value, task.options).value_or(robot::kHumanHandLength);
+    if (humans.contains(length)) continue;
+    humans.emplace(length, robot::RobotModel(robot::scaled(task.human, length / robot::kHumanHandLength)));
+  }
+  std::atomic<std::size_t> next = 0;
+  Progress progress(console, "mapping to the robot hand");
+  const auto work = [&](bool tells) {
+    for (std::size_t i = next++; i < motions.size() && !interrupt_requested; i = next++) {
+      const Demonstration& motion = motions[i].value;
+      const double length = told_length(motion, task.options).value_or(robot::kHumanHandLength);
+      mapped[i] = robot::retarget(motion, calibration_of(motion, task).channels, humans.at(length), task.hand,
+                                  task.mapping, task.settings);
+      if (tells && !interrupt_requested) {
+        progress.update(static_cast<std::int64_t>(i) + 1, static_cast<std::int64_t>(motions.size()));
+      }
+    }
+  };
+  {
+    std::vector<std::jthread> workers;
+    for (int t = 1; t < threads; ++t) workers.emplace_back(work, false);
+    work(true);
+  }
+  std::vector<std::optional<robot::Retargeted>> results(motions.size());
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    if (!mapped[i]) continue;
+    if (!*mapped[i]) throw InputError(motions[i].value.id + ": " + mapped[i]->error().detail);
+    results[i] = std::move(**mapped[i]);
+  }
+  return results;
+}
 
 storage::Record motion_record(const robot::Retargeted& mapped, const storage::Provenance& origin) {
   auto record = storage::encode(mapped.demonstration, origin);
   record.kind = kHandMotion;
-  record.fields["tip_residual_rms"] = mapped.tip_residual_rms;
-  record.fields["tip_residual_max"] = mapped.tip_residual_max;
+  if (!mapped.tips.empty()) {
+    record.fields["tip_residual_rms"] = mapped.tip_residual_rms;
+    record.fields["tip_residual_max"] = mapped.tip_residual_max;
+    record.fields["tip_names"] = mapped.tips;
+    record.fields["tip_rms"] = mapped.tip_rms;
+  }
   record.fields["clamped_samples"] = std::int64_t{mapped.clamped_samples};
+  record.fields["clamped_share"] = mapped.clamped_share;
   return record;
+}
+
+/// Which sizes of the wearers' hands were used; nothing for --mapping paper, where they have no effect.
+void say_hand_lengths(const std::vector<Stored<Demonstration>>& motions, const Task& task, const Console& console) {
+  if (!task.settings.alignment) return;
+  const auto assumed = std::count_if(motions.begin(), motions.end(), [&](const Stored<Demonstration>& motion) {
+    return !told_length(motion.value, task.options).has_value();
+  });
+  if (assumed == 0) return;
+  std::array<char, 200> text{};
+  std::snprintf(text.data(), text.size(),
+                "hand length of %.3f m assumed for %d of %zu recordings: they have no label hand_length, and "
+                "--hand-length was not given",
+                robot::kHumanHandLength, static_cast<int>(assumed), motions.size());
+  console.say(text.data());
+}
+
+Json alignment_json(const Task& task) {
+  const auto& alignment = task.settings.alignment;
+  return alignment ? Json{{"scale", alignment->scale}, {"offset_m", array(alignment->offset)}} : Json(nullptr);
+}
+
+storage::Provenance origin_of(const Task& task) {
+  const RetargetOptions& options = task.options;
+  std::vector<std::filesystem::path> files = task.hand.description().files;
+  files.insert(files.end(), task.human.files.begin(), task.human.files.end());
+  Json parameters = {{"hand", recorded_name(find_file(options.hand))}, {"mapping", options.mapping}};
+  if (!options.urdf.empty()) parameters["urdf"] = recorded_name(find_file(options.urdf));
+  if (task.settings.alignment) parameters["alignment"] = alignment_json(task);
+  return provenance("retarget", {}, files, parameters, 0);
 }
 
 }  // namespace
 
 int retarget(const RetargetOptions& options, const Console& console) {
   storage::Store store(options.common.store, false);
-  const RunLog log(store, "retarget", 1);
+  const int threads = thread_count(options.common.threads);
+  const RunLog log(store, "retarget", threads);
   const auto [motions, superseded] = recordings(store);
   if (motions.empty())
     throw InputError(store.directory().string() + ": no recordings; run: opponens simulate, or ingest");
-  const auto hand_file = find_file(options.hand);
-  const auto human_file = find_file(kHumanHand);
   say_superseded(console, superseded);
-  const robot::RobotModel hand(robot::load_hand(hand_file));
-  const robot::RobotModel human(robot::load_hand(human_file));
-  const auto mapping = robot::load_hand_mapping(hand_file);
-  const Calibrations calibrations = calibrate(motions, human);
-  std::vector<std::filesystem::path> files = hand.description().files;
-  files.insert(files.end(), human.description().files.begin(), human.description().files.end());
-  storage::Provenance origin =
-      provenance("retarget", {}, files, {{"hand", recorded_name(hand_file)}, {"mapping", options.mapping}}, 0);
+  const Task task = make_task(options, motions);
+  const storage::Provenance common = origin_of(task);
+  const auto mapped = map_all(motions, task, threads, console);
 
-  Progress progress(console, "mapping to the robot hand");
   std::vector<storage::Record> records;
-  Residuals residuals;
-  for (const auto& motion : motions) {
-    if (interrupt_requested) break;
-    progress.update(static_cast<std::int64_t>(records.size()), static_cast<std::int64_t>(motions.size()));
-    const auto cluster = calibration_cluster(motion.value);
-    const auto calibration =
-        cluster.empty() ? Calibration{identity(motion.value.joint_names), {}} : calibrations.at(cluster);
-    const auto mapped = robot::retarget(motion.value, calibration.channels, human, hand, mapping, {});
-    if (!mapped) throw InputError(motion.value.id + ": " + mapped.error().detail);
-    origin.inputs = inputs_of(motion.id, calibration);
-    records.push_back(motion_record(*mapped, origin));
-    const auto samples = static_cast<int>(motion.value.time.size());
-    residuals.squares += mapped->tip_residual_rms * mapped->tip_residual_rms * samples;
-    residuals.largest = std::max(residuals.largest, mapped->tip_residual_max);
-    residuals.clamped += mapped->clamped_samples;
-    residuals.samples += samples;
+  RetargetTotals totals;
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    if (!mapped[i]) continue;
+    storage::Provenance origin = common;
+    origin.inputs = inputs_of(motions[i].id, calibration_of(motions[i].value, task));
+    if (task.settings.alignment) {
+      Json parameters = Json::parse(origin.parameters);
+      parameters["hand_length_m"] = told_length(motions[i].value, options).value_or(robot::kHumanHandLength);
+      origin.parameters = parameters.dump();
+    }
+    records.push_back(motion_record(*mapped[i], origin));
+    totals.add(*mapped[i]);
   }
   const auto ids = store.commit(records);
   log.finish(ids);
   if (interrupt_requested) throw Interrupted();
-  const double rms = std::sqrt(residuals.squares / residuals.samples);
-  char text[200];
-  std::snprintf(text, sizeof text,
-                "mapped %zu recordings to %s: fingertips off by %.1f mm rms, %.1f mm at most; a joint was clamped in "
-                "%d of %d samples",
-                ids.size(), hand.description().name.c_str(), 1e3 * rms, 1e3 * residuals.largest, residuals.clamped,
-                residuals.samples);
-  console.say(text);
+  console.say("mapped " + std::to_string(ids.size()) + " recordings to " + task.hand.description().name +
+              ", --mapping " + options.mapping);
+  say_hand_lengths(motions, task, console);
+  totals.say(console);
   Json result = document("retarget");
-  result.update({{"ids", ids},
-                 {"tip_residual_rms_m", rms},
-                 {"tip_residual_max_m", residuals.largest},
-                 {"clamped_samples", residuals.clamped},
-                 {"samples", residuals.samples}});
+  result.update(totals.json());
+  result.update({{"mapping", options.mapping}, {"alignment", alignment_json(task)}});
+  result["ids"] = ids;
   console.document(result.dump());
   return kDone;
 }

@@ -11,6 +11,15 @@
 
 namespace opponens::cli {
 
+robot::RobotDescription load_hand_file(const std::string& hand, const std::string& urdf) {
+  return urdf.empty() ? robot::load_hand(find_file(hand)) : robot::load_hand(find_file(hand), find_file(urdf));
+}
+
+robot::RobotDescription hand_of_motion(const storage::Record& record) {
+  const Json parameters = parameters_of(record);
+  return load_hand_file(parameters.at("hand"), parameters.value("urdf", ""));
+}
+
 NamedWorld load_world(const std::string& robot_file, const std::string& scene_file, const std::string& object) {
   const auto robot_path = find_file(robot_file);
   const auto scene_path = find_file(scene_file);

@@ -31,6 +31,11 @@ struct NamedWorld {
   Eigen::Isometry3d X_RO() const { return scene.X_WR.inverse() * scene.body(object).X_WB; }
 };
 
+/// Loads a hand.yaml as find_file finds it; urdf in place of the one it names, unless empty.
+robot::RobotDescription load_hand_file(const std::string& hand, const std::string& urdf);
+/// The robot hand that a mapped recording is about.
+robot::RobotDescription hand_of_motion(const storage::Record& record);
+
 /// Loads them; an empty object name takes the scene's own. Throws InputError in one sentence.
 NamedWorld load_world(const std::string& robot_file, const std::string& scene_file, const std::string& object);
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -38,13 +39,15 @@ struct RecordingGroup {
 };
 
 struct DemonstrationPart {
-  std::string grouped_by;                ///< label that forms the groups: "family", "object", ...
-  int simulated = 0;                     ///< recordings with origin simulated; > 0 puts the banner on the page
-  std::vector<RecordingGroup> groups;    ///< one row each
-  std::string source;                    ///< a sentence: where the recordings came from
-  std::string mapping;                   ///< how they came to the robot hand, e.g. "paper"; empty: not retargeted
-  std::optional<double> tip_residual;    ///< m, root mean square fingertip residual of the mapping
-  std::optional<Demonstration> example;  ///< drawn as joint traces
+  std::string grouped_by;              ///< label that forms the groups: "family", "object", ...
+  int simulated = 0;                   ///< recordings with origin simulated; > 0 puts the banner on the page
+  std::vector<RecordingGroup> groups;  ///< one row each
+  std::string source;                  ///< a sentence: where the recordings came from
+  std::string mapping;                 ///< how they came to the robot hand, e.g. "paper"; empty: not retargeted
+  std::optional<double> tip_residual;  ///< m, root mean square fingertip residual of the mapping
+  std::vector<std::pair<std::string, double>> tip_residuals;   ///< m, the same per fingertip
+  std::vector<std::pair<std::string, double>> clamped_shares;  ///< share of samples held at a limit, joints that were
+  std::optional<Demonstration> example;                        ///< drawn as joint traces
 };
 
 /// Both cost curves of one recording. S candidate splits.
@@ -69,6 +72,8 @@ struct TransitionFractions {
 struct TransitionPart {
   std::string method;  ///< the rule in force: "likeness" or "changepoint"
   std::optional<TransitionCurves> example;
+  std::vector<TransitionCurves> others;  ///< drawn after the example
+  std::string chosen_by;                 ///< a sentence: by which rule these recordings were chosen
   std::vector<TransitionFractions> all;  ///< one per recording
 };
 
@@ -201,6 +206,15 @@ struct ReportInput {
 
 inline constexpr const char* kRunLogBegin = "<!-- run-log begin -->";
 inline constexpr const char* kRunLogEnd = "<!-- run-log end -->";
+
+/// A picture of the page as a file of its own.
+struct SvgFile {
+  std::string name;     ///< "synergies_1.svg": anchor of its section, number in it
+  std::string content;  ///< complete SVG document with its colours (light theme)
+};
+
+/// Every picture of the page that render_report made, in its order.
+std::vector<SvgFile> svg_files(const std::string& page);
 
 /// One self-contained HTML page (no script, nothing loaded from elsewhere). Equal input gives equal bytes. Throws
 /// std::invalid_argument naming the field when sizes inside a part do not agree.

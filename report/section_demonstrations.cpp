@@ -28,6 +28,19 @@ Markup group_table(const DemonstrationPart& part) {
   return table.str();
 }
 
+/// How well the mapping follows each fingertip, and which joints it holds at a limit.
+Markup mapping_tables(const DemonstrationPart& part) {
+  Markup out;
+  Table tips("Distance of each robot fingertip from its target, root mean square over all samples",
+             {"fingertip", "mm"});
+  for (const auto& [name, residual] : part.tip_residuals) tips.row({text(name), text(fixed(1000.0 * residual, 1))});
+  if (!tips.empty()) out += tips.str();
+  Table joints("Joints held at a limit: share of all samples", {"joint", "share"});
+  for (const auto& [name, share] : part.clamped_shares) joints.row({text(name), text(percent(share))});
+  if (!joints.empty()) out += details("Joints held at a limit", joints.str());
+  return out;
+}
+
 Markup example_recording(const Demonstration& example) {
   require(example.q_h.rows() == example.time.size() &&
               example.q_h.cols() == static_cast<Eigen::Index>(example.joint_names.size()),
@@ -184,6 +197,7 @@ Markup demonstration_section(const ReportInput& input) {
                        fixed(1000.0 * *part.tip_residual, 1), " mm."});
     }
     out += paragraph(words);
+    out += mapping_tables(part);
   }
   if (part.example) out += example_recording(*part.example);
   return out;
@@ -200,7 +214,9 @@ Markup transition_section(const ReportInput& input) {
        "two "
        "candidates; the change-point rule is shown beside it. In force here: ",
        part.method, "."}));
+  if (!part.chosen_by.empty()) out += note(part.chosen_by);
   if (part.example) out += example_curves(*part.example);
+  for (const TransitionCurves& curves : part.others) out += example_curves(curves);
   if (!part.all.empty()) out += fractions(part.all);
   return out;
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <tuple>
+#include <utility>
 
 #include "core/require.hpp"
 #include "report/hand_drawing.hpp"
@@ -141,6 +143,55 @@ Markup coverage_table(const SynergyPart& part) {
   return table.empty() ? Markup{} : table.str();
 }
 
+Series dots(const std::string& label, const std::vector<std::pair<double, double>>& points, int color) {
+  Series series{label, Eigen::VectorXd(static_cast<Eigen::Index>(points.size())), {}, series_color(color), {}};
+  series.y.resize(series.x.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    std::tie(series.x[static_cast<Eigen::Index>(i)], series.y[static_cast<Eigen::Index>(i)]) = points[i];
+  }
+  series.line = false;
+  series.markers = true;
+  return series;
+}
+
+/// Coverage of one kind of box per group: dots in-sample and held out, the interval as a bar, the nominal as a line.
+Markup coverage_plot(const SynergyPart& part, std::optional<Coverage> SynergyItem::*box, const std::string& what) {
+  LinePlot plot;
+  plot.title = concat({"Coverage of ", what});
+  plot.x = {"group", 0.5, static_cast<double>(part.groups.size()) + 0.5, true};
+  plot.y = {"samples inside (%)", std::nullopt, 100.0};
+  plot.width = 510.0;
+  plot.height = 250.0;
+  std::vector<std::pair<double, double>> inside;
+  std::vector<std::pair<double, double>> outside;
+  std::string names;
+  double nominal = 0.0;
+  for (std::size_t i = 0; i < part.groups.size(); ++i) {
+    const auto& coverage = part.groups[i].*box;
+    names += concat({i == 0 ? "" : ", ", std::to_string(i + 1), ": ", part.groups[i].group.name});
+    if (!coverage) continue;
+    const double x = static_cast<double>(i) + 1.0;
+    nominal = coverage->nominal;
+    inside.emplace_back(x - 0.1, 100.0 * coverage->in_sample);
+    if (coverage->held_out) outside.emplace_back(x + 0.1, 100.0 * *coverage->held_out);
+    if (!coverage->interval) continue;
+    const double at = coverage->held_out ? x + 0.1 : x - 0.1;
+    Series bar{"",
+               Eigen::Vector2d(at, at),
+               100.0 * Eigen::Vector2d(coverage->interval->low, coverage->interval->high),
+               series_color(1),
+               {}};
+    plot.series.push_back(bar);
+  }
+  if (inside.empty()) return {};
+  plot.series.push_back(dots("in-sample", inside, 0));
+  if (!outside.empty()) {
+    plot.series.push_back(dots(concat({"held out (bar: ", percent(part.interval_level, 0), " interval)"}), outside, 1));
+  }
+  plot.marks.push_back({concat({"nominal, ", percent(nominal, 0)}), 100.0 * nominal, "var(--soft)", true, true});
+  return figure(render(plot), concat({"Coverage of ", what, ". ", names, "."}));
+}
+
 Markup paper_table() {
   Table table("The paper's Table 1: accumulated sample variance (%) after k synergies (100 at k = 16)",
               {"group", "k = 1", "2", "3", "4", "5", "6", "7", "8", "9", "k for 95 %"});
@@ -163,11 +214,8 @@ std::string comparison_words(const SynergyPart& part) {
                  "drawn dashed as context, and the table is given in full below."});
 }
 
-/// Half width along synergy i: the box's, or where the box leaves the synergy out two standard deviations.
-double drawn_half_width(const SynergyGroup& group, Eigen::Index i) {
-  return i < group.box.half_width.size() ? group.box.half_width[i]
-                                         : 2.0 * std::sqrt(std::max(0.0, group.basis.variance[i]));
-}
+constexpr double kDrawnDeviations = 1.5;  ///< standard deviations from the mean that a drawing shows
+constexpr Eigen::Index kDrawnSynergies = 3;
 
 /// The hand at q as far as its limits let it, with the words that tell where they do not.
 Posture posture(const robot::RobotModel& hand, const std::vector<std::string>& joint_names, const Eigen::VectorXd& q,
@@ -181,20 +229,22 @@ Posture posture(const robot::RobotModel& hand, const std::vector<std::string>& j
 Markup draw_synergy(const robot::RobotModel& hand, const RobotFacets& facets, const SynergyPart& part,
                     const SynergyItem& item, Eigen::Index i) {
   const auto& group = item.group;
-  const double h = drawn_half_width(group, i);
-  const bool in_box = i < group.box.half_width.size();
+  const double reach = kDrawnDeviations * std::sqrt(std::max(0.0, group.basis.variance[i]));
   std::vector<Posture> postures;
   for (const int side : {-1, 0, 1}) {
-    const Eigen::VectorXd x = group.basis.mean + side * h * group.basis.axes.col(i);
+    const Eigen::VectorXd x = group.basis.mean + side * reach * group.basis.axes.col(i);
     const Eigen::VectorXd q = group.box.scale.cwiseProduct(x);
-    postures.push_back(posture(hand, part.joint_names, q, side == 0 ? "mean" : side < 0 ? "mean - h" : "mean + h"));
+    postures.push_back(posture(hand, part.joint_names, q,
+                               side == 0  ? "mean"
+                               : side < 0 ? "mean - 1.5 s"
+                                          : "mean + 1.5 s"));
   }
   const double total = group.basis.variance.sum();
   const double share = total > 0.0 ? group.basis.variance[i] / total : 0.0;
   const std::string name = concat({"Synergy ", std::to_string(i + 1), " of ", group.name});
-  const std::string caption =
-      concat({"Synergy ", std::to_string(i + 1), ": ", percent(share), " of the variance, h = ", fixed(h, 2),
-              in_box ? "" : " (not in the k-box: two standard deviations)"});
+  const std::string caption = concat({"Synergy ", std::to_string(i + 1), ": ", percent(share),
+                                      " of the variance, s = ", fixed(reach / kDrawnDeviations, 2),
+                                      i < group.box.half_width.size() ? "" : " (beyond k)"});
   return figure(draw_postures(hand, facets, postures, name, 172.0, 190.0), caption);
 }
 
@@ -219,6 +269,8 @@ Markup synergy_section(const ReportInput& input) {
     out += note(concat({"Boxes are sized for alpha = ", percent(box.alpha), " and beta = ", percent(box.beta),
                         ", root ", part.box_root, "."}));
   }
+  out += row_of({coverage_plot(part, &SynergyItem::full_box, "the full box (all effective axes)"),
+                 coverage_plot(part, &SynergyItem::reduced_box, "the first k coordinates")});
   out += coverage_table(part);
   out += details("Table 1 of the paper", paper_table());
   return out;
@@ -230,17 +282,16 @@ Markup synergy_drawing_section(const ReportInput& input) {
   check(*input.synergies);
   const RobotFacets facets = robot_facets(*input.hand, 2400);
   Markup out = paragraph(
-      "The robot hand at the mean of each group and at both ends of its box along the first two synergies, clipped to "
-      "the joint limits where the box reaches beyond them (the words say by how much at most, rad). h is the half "
-      "width "
-      "of the box: its ends are not postures that were recorded.");
+      "The robot hand at the mean of each group and 1.5 standard deviations s to both sides along its first three "
+      "synergies, clipped to the joint limits where that reaches beyond them (the words say by how much at most, "
+      "rad).");
   for (const auto& item : input.synergies->groups) {
     out += subheading(item.group.name == "pre-grasp"
                           ? "Pre-grasp"
                           : concat({item.group.phase == "grasp" ? "Grasp phase, " : "Whole movement, ",
                                     input.synergies->grouped_by, " ", item.group.name}));
     std::vector<Markup> drawings;
-    for (Eigen::Index i = 0; i < std::min<Eigen::Index>(2, item.group.basis.variance.size()); ++i) {
+    for (Eigen::Index i = 0; i < std::min(kDrawnSynergies, item.group.basis.variance.size()); ++i) {
       drawings.push_back(draw_synergy(*input.hand, facets, *input.synergies, item, i));
     }
     out += row_of(drawings);

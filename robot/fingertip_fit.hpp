@@ -3,12 +3,11 @@
 #pragma once
 
 #include <map>
-#include <optional>
 #include <vector>
 
 #include "core/result.hpp"
 #include "robot/finger.hpp"
-#include "robot/hand_mapping.hpp"
+#include "robot/retarget.hpp"
 
 namespace opponens::robot {
 
@@ -22,20 +21,39 @@ struct FittedJoint {
 /// Where a robot finger's tip should be.
 struct TipTarget {
   Finger finger;
-  std::vector<int> joints;             ///< indices into q of the fitted joints that move it, palm first
+  std::vector<int> joints;             ///< indices into q of the fitted joints on the way to it, palm first
   std::map<int, FittedJoint> turning;  ///< by index into q
   Eigen::Matrix3Xd path;               ///< [3 x T] m, palm frame
 };
 
+/// The least-squares problem of retarget(), or of align_hands().
+struct FingertipFit {
+  std::vector<TipTarget> targets;
+  std::vector<int> fitted;  ///< indices into q
+  Eigen::MatrixXd rest;     ///< [fitted x T] rad
+  Eigen::VectorXd time;     ///< [T] s; empty: the samples do not follow each other
+  bool cylindrical =
+      true;  ///< tip errors in cylinder coordinates about the first fitted joint: for targets out of reach
+  double tolerance = 1e-9;  ///< relative fall of the cost in three iterations that ends it
+  bool shifted = false;     ///< one shift common to all targets is found too; then cylindrical must be false
+};
+
 /// Start values for fit_fingertips: cyclic coordinate descent, one fitted joint at a time, sample after sample. Exact
 /// for a finger with one fitted joint but for the small weights of smoothness and rest.
-void seed_positions(const RobotModel& hand, const std::vector<TipTarget>& targets, const std::vector<int>& fitted,
-                    Eigen::MatrixXd& q);
+void seed_positions(const RobotModel& hand, const FingertipFit& fit, Eigen::MatrixXd& q);
 
-/// Moves the fitted joints' rows of q [d x T] so that the tips follow their targets (the problem of retarget()).
-/// Returns why not, when the solver did not meet its tolerance.
-std::optional<Failure> fit_fingertips(const RobotModel& hand, const std::vector<TipTarget>& targets,
-                                      const std::vector<int>& fitted, const RetargetSettings& settings,
-                                      Eigen::MatrixXd& q);
+/// The fit falls apart where no joint moves the tips of two parts: with most hands finger by finger. Each part is
+/// solved for itself, which is the same solution. A shifted fit is one part.
+std::vector<FingertipFit> independent_parts(const FingertipFit& fit);
+
+struct FitResult {
+  Eigen::Vector3d shift = Eigen::Vector3d::Zero();  ///< m, common to all targets; zero unless it was asked for
+  bool converged = true;                            ///< false: the iteration limit came before the tolerance
+};
+
+/// Moves the fitted joints' rows of q [d x T] from where they are so that the tips follow their targets. Failure: the
+/// solver broke down (not_converged).
+Result<FitResult> fit_fingertips(const RobotModel& hand, const FingertipFit& fit, const RetargetSettings& settings,
+                                 Eigen::MatrixXd& q);
 
 }  // namespace opponens::robot

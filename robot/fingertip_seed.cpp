@@ -44,19 +44,18 @@ double best_turn(const RobotModel& hand, const std::vector<TipTarget>& targets, 
 
 }  // namespace
 
-void seed_positions(const RobotModel& hand, const std::vector<TipTarget>& targets, const std::vector<int>& fitted,
-                    Eigen::MatrixXd& q) {
+void seed_positions(const RobotModel& hand, const FingertipFit& fit, Eigen::MatrixXd& q) {
   std::vector<Eigen::Isometry3d> X_RL;
   for (Eigen::Index t = 0; t < q.cols(); ++t) {
     if (t > 0) {
-      for (const int joint : fitted) q(joint, t) = q(joint, t - 1);
+      for (const int joint : fit.fitted) q(joint, t) = q(joint, t - 1);
     }
     Eigen::VectorXd position = q.col(t);
     for (int sweep = 0; sweep < kSweeps; ++sweep) {
       double change = 0.0;
-      for (const int joint : fitted) {
+      for (const int joint : fit.fitted) {
         hand.link_poses(position, X_RL);
-        const double best = best_turn(hand, targets, joint, t, position, X_RL);
+        const double best = best_turn(hand, fit.targets, joint, t, position, X_RL);
         change = std::max(change, std::abs(best - position[joint]));
         position[joint] = best;
       }

@@ -88,7 +88,7 @@ HandFile read_hand_file(const std::filesystem::path& hand_yaml) {
   file.allow_keys({"urdf", "packages", "collision", "without_geometry", "palm_link", "joints", "tips", "contact_points",
                    "mapping", "allowed_collisions"});
   const YamlValue palm = file.at("palm_link");
-  HandFile hand{.urdf = file.at("urdf").path(),
+  HandFile hand{.urdf = file.at("urdf"),
                 .urdf_settings = {},
                 .palm_link = {palm.text(), palm},
                 .without_geometry = {},

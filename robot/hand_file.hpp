@@ -25,7 +25,7 @@ struct NamedPoint {
 
 /// The content of a hand.yaml, before its URDF is read.
 struct HandFile {
-  std::filesystem::path urdf;
+  YamlValue urdf;  ///< its path may name an environment variable that is not set where another URDF is used
   UrdfSettings urdf_settings;
   NamedValue palm_link;
   std::vector<NamedValue> without_geometry;  ///< links; their names are in urdf_settings too

@@ -31,6 +31,21 @@ void require_tip(const HandFile& hand, const std::string& name, const YamlValue&
   if (!known) where.fail("no tip '" + name + "' in this file");
 }
 
+JointMapping read_copy(const YamlValue& item, const HandFile& hand, std::set<std::string>& used) {
+  item.allow_keys({"joint", "channel", "gain", "offset", "ranges"});
+  JointMapping copy{read_joint(item.at("joint"), hand, used), item.at("channel").text()};
+  if (const auto gain = item.find("gain")) copy.gain = gain->number();
+  if (const auto offset = item.find("offset")) copy.offset = offset->number();
+  if (const auto ranges = item.find("ranges")) {
+    if (ranges->text() != "true" && ranges->text() != "false") ranges->fail("expected true or false");
+    copy.ranges = ranges->text() == "true";
+    if (copy.ranges && (std::abs(copy.gain) != 1.0 || copy.offset != 0.0)) {
+      ranges->fail("gain must be 1 or -1 and offset 0 where ranges are matched");
+    }
+  }
+  return copy;
+}
+
 /// Percentile in [0, 1] of sorted values, linear between order statistics.
 double percentile(const std::vector<double>& sorted, double share) {
   const double place = share * static_cast<double>(sorted.size() - 1);
@@ -59,15 +74,13 @@ HandMapping load_hand_mapping(const std::filesystem::path& hand_yaml) {
   const HandFile hand = read_hand_file(hand_yaml);
   if (!hand.mapping) throw InputError(hand_yaml.string() + ": has no key 'mapping'");
   const YamlValue& value = *hand.mapping;
-  value.allow_keys({"copied", "fitted", "fingertips", "palm_rpy"});
+  value.allow_keys({"copied", "direct", "fitted", "fingertips", "palm_rpy"});
   HandMapping mapping;
   std::set<std::string> used;
-  for (const YamlValue& item : value.at("copied").items()) {
-    item.allow_keys({"joint", "channel", "gain", "offset"});
-    JointMapping copy{read_joint(item.at("joint"), hand, used), item.at("channel").text()};
-    if (const auto gain = item.find("gain")) copy.gain = gain->number();
-    if (const auto offset = item.find("offset")) copy.offset = offset->number();
-    mapping.copied.push_back(std::move(copy));
+  for (const YamlValue& item : value.at("copied").items()) mapping.copied.push_back(read_copy(item, hand, used));
+  if (const auto direct = value.find("direct")) {
+    std::set<std::string> copied = used;  // a joint may be both direct and fitted: one for each mapping
+    for (const YamlValue& item : direct->items()) mapping.direct.push_back(read_copy(item, hand, copied));
   }
   if (const auto fitted = value.find("fitted")) {
     for (const YamlValue& item : fitted->items()) mapping.fitted.push_back(read_joint(item, hand, used));

@@ -210,7 +210,7 @@ RobotDescription load_mounted(const RobotFile& robot, const std::filesystem::pat
   if (const auto support = mount.find("support")) attach_support(description, parent, *support);
   UrdfSettings hand_settings = robot.hand.urdf_settings;
   hand_settings.geometry = robot.settings.geometry;
-  const RobotDescription hand = read_urdf(robot.hand.urdf, hand_settings);
+  const RobotDescription hand = read_urdf(robot.hand.urdf.path(), hand_settings);
   require_links(robot.without_geometry, description, hand);
   attach(description, subtree(hand, require_link(hand, robot.hand.palm_link)), parent, mount.pose(), mount);
   return description;
@@ -228,13 +228,17 @@ bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
 }  // namespace
 
 RobotDescription load_hand(const std::filesystem::path& hand_yaml) {
+  return load_hand(hand_yaml, read_hand_file(hand_yaml).urdf.path());
+}
+
+RobotDescription load_hand(const std::filesystem::path& hand_yaml, const std::filesystem::path& urdf) {
   const HandFile hand = read_hand_file(hand_yaml);
-  const RobotDescription whole = read_urdf(hand.urdf, hand.urdf_settings);
+  const RobotDescription whole = read_urdf(urdf, hand.urdf_settings);
   require_links(hand.without_geometry, whole, whole);
   RobotDescription description = subtree(whole, require_link(whole, hand.palm_link));
   fill_hand(description, hand);
   description.weights = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(description.hand_joints.size()));
-  description.files = {hand_yaml, hand.urdf};
+  description.files = {hand_yaml, urdf};
   add_mesh_files(description);
   return description;
 }
@@ -272,7 +276,7 @@ RobotDescription load_robot(const std::filesystem::path& robot_yaml) {
   robot.hand.urdf_settings.without_geometry = robot.settings.without_geometry;
   const std::filesystem::path urdf = arm.at("urdf").path();
   const std::optional<YamlValue> mount = file.find("mount");
-  if (!mount && !same_file(urdf, robot.hand.urdf)) {
+  if (!mount && !same_file(urdf, robot.hand.urdf.path())) {
     file.fail("needs a key 'mount', since arm.urdf and the hand's urdf are two files");
   }
   RobotDescription description = mount ? load_mounted(robot, urdf, *mount) : load_joined(robot, urdf);
@@ -292,7 +296,7 @@ RobotDescription load_robot(const std::filesystem::path& robot_yaml) {
   allow_pairs(description, read_pairs(file));
   description.weights = read_weights(file, description);
   description.files = {robot_yaml, file.at("hand").path(), urdf};
-  if (mount) description.files.push_back(robot.hand.urdf);
+  if (mount) description.files.push_back(robot.hand.urdf.path());
   add_mesh_files(description);
   return description;
 }

@@ -1,190 +1,174 @@
 // SPDX-FileCopyrightText: 2026 The opponens authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "robot/retarget.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include "core/require.hpp"
-#include "robot/fingertip_fit.hpp"
-#include "robot/hand_mapping.hpp"
+#include "robot/joint_mapping.hpp"
+#include "robot/tip_targets.hpp"
 
 namespace opponens::robot {
 
 namespace {
 
-std::optional<int> index_of(const std::vector<std::string>& names, const std::string& name) {
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) return std::nullopt;
-  return static_cast<int>(found - names.begin());
-}
+constexpr double kTolerance = 1e-5;  ///< of the cost where all joints of a finger are fitted
 
-const SurfacePoint* find_tip(const RobotModel& hand, const std::string& name) {
-  const auto& tips = hand.description().tips;
-  const auto found = std::find_if(tips.begin(), tips.end(), [&](const SurfacePoint& tip) { return tip.name == name; });
-  return found == tips.end() ? nullptr : &*found;
-}
+/// Both hands, and how the one drives the other.
+struct Task {
+  const RobotModel& human;
+  const RobotModel& hand;
+  const HandMapping& mapping;
+  const RetargetSettings& settings;
+  std::vector<FingerPair> fingers{};
+  Eigen::MatrixXd q_human{};  ///< [d x T] rad
+};
 
-/// The human joint positions of all samples [d x T], calibrated; channels not recorded stay nearest to zero.
-Result<Eigen::MatrixXd> human_positions(const Demonstration& recording, const ChannelCalibration& calibration,
-                                        const RobotModel& human) {
-  Eigen::MatrixXd q = human.clip(Eigen::VectorXd::Zero(human.dof())).replicate(1, recording.q_h.rows());
-  for (int i = 0; i < human.dof(); ++i) {
-    const std::string& channel = human.joint_names()[static_cast<std::size_t>(i)];
-    const std::optional<int> column = index_of(recording.joint_names, channel);
-    if (!column) continue;
-    const std::optional<int> line = index_of(calibration.channels, channel);
-    const double gain = line ? calibration.gain[*line] : 1.0;
-    const double offset = line ? calibration.offset[*line] : 0.0;
-    q.row(i) = (gain * recording.q_h.col(*column).array() + offset).transpose();
+void validate(const Demonstration& recording, const RetargetSettings& settings) {
+  require(recording.q_h.rows() > 0 && recording.q_h.rows() == recording.time.size() &&
+              recording.q_h.cols() == static_cast<Eigen::Index>(recording.joint_names.size()),
+          [&] { return "recording '" + recording.id + "': sizes of time, joint names and samples do not agree"; });
+  for (Eigen::Index t = 1; t < recording.time.size(); ++t) {
+    require(recording.time[t] > recording.time[t - 1],
+            [&] { return "recording '" + recording.id + "': time does not increase at sample " + std::to_string(t); });
   }
-  if (!q.allFinite()) {
-    return failure(FailureCode::invalid_input, "recording '" + recording.id + "' has a value that is not finite");
+  require(
+      settings.velocity >= 0.0 && settings.acceleration >= 0.0 && settings.rest >= 0.0 && settings.max_iterations > 0,
+      "retarget: velocity, acceleration and rest must not be negative, max_iterations must be positive");
+}
+
+Result<std::vector<int>> named_joints(const RobotModel& hand, const std::vector<std::string>& names) {
+  std::vector<int> joints;
+  for (const std::string& name : names) {
+    const std::optional<int> joint = index_of(hand.joint_names(), name);
+    if (!joint) return failure(FailureCode::not_found, "the robot hand has no joint '" + name + "'");
+    joints.push_back(*joint);
+  }
+  return joints;
+}
+
+/// What the fitted joints shall do; for MappingKind::joint only the targets, since nothing is fitted.
+Result<FingertipFit> fit_of(const Task& task) {
+  FingertipFit fit;
+  if (task.settings.mapping == MappingKind::paper) {
+    const auto fitted = named_joints(task.hand, task.mapping.fitted);
+    if (!fitted) return tl::make_unexpected(fitted.error());
+    fit.fitted = *fitted;
+    auto targets = finger_targets(task.human, task.q_human, task.hand, task.mapping, task.fingers, *fitted);
+    if (!targets) return tl::make_unexpected(targets.error());
+    fit.targets = std::move(*targets);
+    return fit;
+  }
+  if (task.fingers.empty()) {
+    if (task.settings.mapping == MappingKind::joint) return fit;
+    return failure(FailureCode::degenerate, "the mapping names no fingertip");
+  }
+  const auto alignment = task.settings.alignment ? Result<HandAlignment>(*task.settings.alignment)
+                                                 : align_hands(task.human, task.hand, task.mapping);
+  if (!alignment) return tl::make_unexpected(alignment.error());
+  fit.targets = aligned_targets(task.human, task.q_human, *alignment, task.mapping.R_robot_human, task.fingers);
+  fit.cylindrical = false;
+  fit.tolerance = kTolerance;
+  if (task.settings.mapping == MappingKind::fingertip) fit.fitted = moving_joints(task.fingers);
+  return fit;
+}
+
+/// Where the joints are before the fit: copied joints at their channels, and so the direct ones but for the paper's
+/// mapping, which has its fitted ones in the middle.
+Result<Eigen::MatrixXd> start_positions(const Demonstration& recording, const Task& task, BoolMatrix& clamped) {
+  const RobotModel& hand = task.hand;
+  const bool paper = task.settings.mapping == MappingKind::paper;
+  Eigen::MatrixXd q = hand.clip(Eigen::VectorXd::Zero(hand.dof())).replicate(1, task.q_human.cols());
+  clamped = BoolMatrix::Constant(q.rows(), q.cols(), false);
+  std::vector<JointMapping> copies = task.mapping.copied;
+  if (!paper) copies.insert(copies.end(), task.mapping.direct.begin(), task.mapping.direct.end());
+  if (const auto present = require_channels(recording, task.mapping.copied); !present) {
+    return tl::make_unexpected(present.error());
+  }
+  if (const auto copied = copy_joints(task.human, task.q_human, hand, copies, q, clamped); !copied) {
+    return tl::make_unexpected(copied.error());
   }
   return q;
 }
 
-/// Copies the joint-to-joint part into q [d x T] of the robot hand and counts the samples that hit a limit.
-Result<int> copy_joints(const Demonstration& recording, const RobotModel& human, const Eigen::MatrixXd& q_human,
-                        const RobotModel& hand, const HandMapping& mapping, Eigen::MatrixXd& q) {
-  Eigen::Array<bool, Eigen::Dynamic, 1> clamped = Eigen::Array<bool, Eigen::Dynamic, 1>::Constant(q.cols(), false);
-  for (const JointMapping& copy : mapping.copied) {
-    const std::optional<int> joint = index_of(hand.joint_names(), copy.joint);
-    const std::optional<int> channel = index_of(human.joint_names(), copy.channel);
-    if (!joint) return failure(FailureCode::not_found, "the robot hand has no joint '" + copy.joint + "'");
-    if (!channel) return failure(FailureCode::not_found, "the human hand has no joint '" + copy.channel + "'");
-    if (!index_of(recording.joint_names, copy.channel)) {
-      return failure(FailureCode::not_found, "recording '" + recording.id + "' has no channel '" + copy.channel +
-                                                 "', which joint '" + copy.joint + "' copies");
-    }
-    const Eigen::ArrayXd wanted = copy.gain * q_human.row(*channel).transpose().array() + copy.offset;
-    const double low = hand.lower()[*joint];
-    const double high = hand.upper()[*joint];
-    q.row(*joint) = wanted.max(low).min(high).transpose();
-    clamped = clamped || wanted < low || wanted > high;
-  }
-  return static_cast<int>(clamped.count());
-}
-
-Result<std::vector<int>> fitted_joints(const RobotModel& hand, const HandMapping& mapping) {
-  std::vector<int> fitted;
-  for (const std::string& name : mapping.fitted) {
-    const std::optional<int> joint = index_of(hand.joint_names(), name);
-    if (!joint) return failure(FailureCode::not_found, "the robot hand has no joint '" + name + "'");
-    fitted.push_back(*joint);
-  }
-  return fitted;
-}
-
-/// The fitted joints between palm and tip. A joint that only drives others (mimic) is not among them and stays
-/// unfitted.
-void find_fitted_joints(const RobotModel& hand, const std::vector<int>& fitted, TipTarget& target) {
-  for (int link = target.finger.link; link != hand.palm() && hand.links()[static_cast<std::size_t>(link)].joint >= 0;) {
-    const Joint& joint =
-        hand.description().joints[static_cast<std::size_t>(hand.links()[static_cast<std::size_t>(link)].joint)];
-    const std::optional<int> index = index_of(hand.joint_names(), joint.name);
-    if (index && std::find(fitted.begin(), fitted.end(), *index) != fitted.end()) {
-      target.joints.insert(target.joints.begin(), *index);
-      target.turning[*index] = {joint.child, joint.axis, joint.type == JointType::revolute};
-    }
-    link = joint.parent;
-  }
-}
-
-struct FingerPair {
-  Finger robot;
-  Finger human;
-};
-
-Result<std::map<std::string, FingerPair>> mapped_fingers(const RobotModel& human, const RobotModel& hand,
-                                                         const HandMapping& mapping) {
-  std::map<std::string, FingerPair> fingers;
-  for (const auto& [robot_name, human_name] : mapping.fingertips) {
-    const SurfacePoint* robot_tip = find_tip(hand, robot_name);
-    const SurfacePoint* human_tip = find_tip(human, human_name);
-    if (!robot_tip) return failure(FailureCode::not_found, "the robot hand has no tip '" + robot_name + "'");
-    if (!human_tip) return failure(FailureCode::not_found, "the human hand has no tip '" + human_name + "'");
-    fingers[robot_name] = {finger_of(hand, *robot_tip), finger_of(human, *human_tip)};
-  }
-  return fingers;
-}
-
-/// p* = b_r + (l_r / l_h) R (p_h - b_h) for every mapped tip.
-Result<std::vector<TipTarget>> tip_targets(const RobotModel& human, const Eigen::MatrixXd& q_human,
-                                           const RobotModel& hand, const HandMapping& mapping,
-                                           const std::vector<int>& fitted) {
-  const auto fingers = mapped_fingers(human, hand, mapping);
-  if (!fingers) return tl::make_unexpected(fingers.error());
-  std::vector<TipTarget> targets;
-  for (const auto& [name, pair] : *fingers) {
-    const auto other = mapping.measured_from.find(name);
-    const auto from = fingers->find(other == mapping.measured_from.end() ? name : other->second);
-    if (from == fingers->end()) {
-      return failure(FailureCode::not_found, "tip '" + name + "' is measured from '" + other->second + "': not mapped");
-    }
-    const Finger& ours = from->second.robot;
-    const Finger& theirs = from->second.human;
-    const Eigen::Matrix3d turned = (ours.length / theirs.length) * mapping.R_robot_human;
-    TipTarget target{pair.robot, {}, {}, {}};
-    target.path = (turned * (tip_path(human, pair.human, q_human).colwise() - theirs.base)).colwise() + ours.base;
-    find_fitted_joints(hand, fitted, target);
-    targets.push_back(std::move(target));
-  }
+void mark_limits(const RobotModel& hand, const std::vector<int>& fitted, const Eigen::MatrixXd& q,
+                 BoolMatrix& clamped) {
   for (const int joint : fitted) {
-    const bool used = std::any_of(targets.begin(), targets.end(), [&](const TipTarget& target) {
-      return std::find(target.joints.begin(), target.joints.end(), joint) != target.joints.end();
-    });
-    if (!used) {
-      return failure(FailureCode::degenerate, "joint '" + hand.joint_names()[static_cast<std::size_t>(joint)] +
-                                                  "' is fitted, but moves no mapped fingertip");
-    }
+    clamped.row(joint) = q.row(joint).array() <= hand.lower()[joint] || q.row(joint).array() >= hand.upper()[joint];
   }
-  return targets;
 }
 
-void measure_residuals(const RobotModel& hand, const std::vector<TipTarget>& targets, const Eigen::MatrixXd& q,
-                       Retargeted& result) {
-  double sum = 0.0;
-  double count = 0.0;
-  for (const TipTarget& target : targets) {
-    const Eigen::VectorXd distance = (tip_path(hand, target.finger, q) - target.path).colwise().norm();
-    sum += distance.squaredNorm();
-    count += static_cast<double>(distance.size());
+void measure(const Task& task, const FingertipFit& fit, const Eigen::MatrixXd& q, const BoolMatrix& clamped,
+             Retargeted& result) {
+  const auto samples = static_cast<double>(q.cols());
+  result.tip_rms.resize(static_cast<Eigen::Index>(fit.targets.size()));
+  for (std::size_t f = 0; f < fit.targets.size(); ++f) {
+    const TipTarget& target = fit.targets[f];
+    const Eigen::VectorXd distance = (tip_path(task.hand, target.finger, q) - target.path).colwise().norm();
+    result.tips.push_back(task.fingers[f].tip);
+    result.tip_rms[static_cast<Eigen::Index>(f)] = std::sqrt(distance.squaredNorm() / samples);
     result.tip_residual_max = std::max(result.tip_residual_max, distance.maxCoeff());
   }
-  result.tip_residual_rms = count > 0.0 ? std::sqrt(sum / count) : 0.0;
+  if (!result.tips.empty()) {
+    result.tip_residual_rms = std::sqrt(result.tip_rms.squaredNorm() / static_cast<double>(result.tips.size()));
+  }
+  const PlanningGroup& group = task.hand.hand();
+  const BoolMatrix ours = clamped.middleRows(group.first, group.count);
+  result.clamped_share = ours.cast<double>().rowwise().mean();
+  result.clamped_samples = static_cast<int>(ours.colwise().any().count());
 }
 
 }  // namespace
 
+RetargetSettings default_settings(MappingKind mapping) {
+  RetargetSettings settings;
+  settings.mapping = mapping;
+  if (mapping == MappingKind::fingertip) {
+    settings.velocity = 0.0;
+    settings.acceleration = 0.005;
+    settings.rest = 0.2;
+    settings.max_iterations = 500;
+  }
+  return settings;
+}
+
 Result<Retargeted> retarget(const Demonstration& recording, const ChannelCalibration& calibration,
                             const RobotModel& human, const RobotModel& hand, const HandMapping& mapping,
                             const RetargetSettings& settings) {
-  require(recording.q_h.rows() > 0 && recording.q_h.rows() == recording.time.size() &&
-              recording.q_h.cols() == static_cast<Eigen::Index>(recording.joint_names.size()),
-          [&] { return "recording '" + recording.id + "': sizes of time, joint names and samples do not agree"; });
-  require(settings.smoothness >= 0.0 && settings.rest >= 0.0 && settings.max_iterations > 0,
-          "retarget: smoothness and rest must not be negative, max_iterations must be positive");
-  const Result<Eigen::MatrixXd> q_human = human_positions(recording, calibration, human);
+  validate(recording, settings);
+  Task task{human, hand, mapping, settings};
+  auto q_human = human_positions(recording, calibration, human);
   if (!q_human) return tl::make_unexpected(q_human.error());
-  const Result<std::vector<int>> fitted = fitted_joints(hand, mapping);
-  if (!fitted) return tl::make_unexpected(fitted.error());
-  const Result<std::vector<TipTarget>> targets = tip_targets(human, *q_human, hand, mapping, *fitted);
-  if (!targets) return tl::make_unexpected(targets.error());
+  task.q_human = std::move(*q_human);
+  auto fingers = mapped_fingers(human, hand, mapping);
+  if (!fingers) return tl::make_unexpected(fingers.error());
+  task.fingers = std::move(*fingers);
+  Result<FingertipFit> fit = fit_of(task);
+  if (!fit) return tl::make_unexpected(fit.error());
+  BoolMatrix clamped;
+  Result<Eigen::MatrixXd> q = start_positions(recording, task, clamped);
+  if (!q) return tl::make_unexpected(q.error());
 
-  Eigen::MatrixXd q = hand.clip(Eigen::VectorXd::Zero(hand.dof())).replicate(1, q_human->cols());
-  for (const int joint : *fitted) q.row(joint).setConstant(0.5 * (hand.lower()[joint] + hand.upper()[joint]));
-  const Result<int> clamped = copy_joints(recording, human, *q_human, hand, mapping, q);
-  if (!clamped) return tl::make_unexpected(clamped.error());
-  if (std::optional<Failure> failed = fit_fingertips(hand, *targets, *fitted, settings, q)) {
-    failed->detail = "recording '" + recording.id + "': " + failed->detail;
-    return tl::make_unexpected(*failed);
+  fit->time = recording.time;
+  fit->rest = (*q)(fit->fitted, Eigen::all);
+  if (settings.mapping == MappingKind::paper) {
+    fit->rest = (0.5 * (hand.lower() + hand.upper()))(fit->fitted).replicate(1, q->cols());
+    (*q)(fit->fitted, Eigen::all) = fit->rest;
+    seed_positions(hand, *fit, *q);
   }
+  const auto fitted = fit_fingertips(hand, *fit, settings, *q);
+  if (!fitted) {
+    return failure(fitted.error().code, "recording '" + recording.id + "': " + fitted.error().detail);
+  }
+  mark_limits(hand, fit->fitted, *q, clamped);
 
   Retargeted result;
+  result.converged = fitted->converged;
   result.demonstration = recording;
   result.demonstration.joint_names = hand.hand().joint_names;
-  result.demonstration.q_h = q.middleRows(hand.hand().first, hand.hand().count).transpose();
-  result.clamped_samples = *clamped;
-  measure_residuals(hand, *targets, q, result);
+  result.demonstration.q_h = q->middleRows(hand.hand().first, hand.hand().count).transpose();
+  measure(task, *fit, *q, clamped, result);
   return result;
 }
 

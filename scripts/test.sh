@@ -3,7 +3,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 #
 # Sets up, builds and tests everything, as CI does: the release build with warnings as errors and all tests, the
-# installed package, and the sanitizer build. `scripts/test.sh release` or `sanitize` runs one part.
+# installed package, the sanitizer build, and each fuzz target for some seconds. `scripts/test.sh release`, `sanitize` or
+# `fuzz` runs one part; `scripts/test.sh fuzz 600` each target for ten minutes.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
@@ -19,23 +20,39 @@ run_tests() {  # PRESET ctest-options...
   (cd "$ROOT/build/$preset" && ctest --output-on-failure --no-tests=error -j "$(nproc)" "$@") | without_passed
 }
 
+# Every target on its seeds and on what they grow to; what makes one fail is left in build/fuzz.
+run_fuzzers() {  # SECONDS
+  local target name work="$ROOT/build/fuzz/corpus"
+  /usr/bin/python3 "$ROOT/tests/fuzz/make_corpus.py" "$work"
+  for target in "$ROOT"/build/fuzz/tests/fuzz/*_fuzz; do
+    name="$(basename "$target" _fuzz)"
+    say "Fuzzing $name ($1 s)"
+    "$target" -max_total_time="$1" -timeout=20 -rss_limit_mb=2048 -max_len=4096 -verbosity=0 -print_final_stats=1 \
+      -artifact_prefix="$ROOT/build/fuzz/$name-" "$work/$name"
+  done
+}
+
 part="${1:-all}"
 case "$part" in
-  all|release|sanitize) ;;
-  *) echo "usage: scripts/test.sh [all|release|sanitize]" >&2; exit 2 ;;
+  all|release|sanitize|fuzz) ;;
+  *) echo "usage: scripts/test.sh [all|release|sanitize|fuzz [SECONDS]]" >&2; exit 2 ;;
 esac
 
 install_packages
-if [ "$part" != sanitize ]; then
+if [ "$part" = all ] || [ "$part" = release ]; then
   configure_and_build release -DOPPONENS_WERROR=ON -DOPPONENS_TESTS=ON -DOPPONENS_EXAMPLES=ON
   run_tests release
 fi
-if [ "$part" != release ]; then
+if [ "$part" = all ] || [ "$part" = sanitize ]; then
   # The install test, the long flows, whole grasp searches and simulations of statistics belong to the release build.
   # UBSan without null and object-size, which ASan sees, and alignment: they double the time to compile Eigen.
   # No -Werror here: GCC 12's sanitizers raise false alarms of uninitialised use in the standard library.
   configure_and_build sanitize -DOPPONENS_WERROR=OFF -DOPPONENS_TESTS=ON -DOPPONENS_EXAMPLES=OFF
   export LSAN_OPTIONS="suppressions=$ROOT/tests/support/lsan.supp:print_suppressions=0"
   run_tests sanitize -LE release_only -E 'GraspSearch\.(Sphere|BoxOnATable|AnObjectTooLarge)'
+fi
+if [ "$part" = all ] || [ "$part" = fuzz ]; then
+  configure_and_build fuzz
+  run_fuzzers "${2:-10}"
 fi
 say "All tests passed"

@@ -58,27 +58,24 @@ bool append_to_file(const fs::path& path, const std::list<std::string_view>& pie
 
 }  // namespace
 
-Catalog::Changes Catalog::load(const fs::path& directory, const std::vector<std::string>& files) {
+void Catalog::load(const fs::path& directory) {
   const std::optional<FileState> state = file_state(directory / kIndexName);
-  if (!state || state != state_) {
-    blocks_.clear();
-    bytes_.clear();
-    saved_.reset();
-    keys_.clear();
-    keyed_ = 0;
-    state_ = state;
-    if (state) {
-      try {
-        bytes_.push_back(read_file(directory / kIndexName));
-      } catch (const InputError&) {
-        bytes_.emplace_back();
-      }
-      ParsedIndex parsed = parse_index(bytes_.front());
-      blocks_ = std::move(parsed.blocks);
-      if (parsed.valid_bytes == state->size && bytes_.front().size() == state->size) saved_ = blocks_.size();
-    }
+  if (state && state == state_) return;
+  blocks_.clear();
+  bytes_.clear();
+  saved_.reset();
+  keys_.clear();
+  keyed_ = 0;
+  state_ = state;
+  if (!state) return;
+  try {
+    bytes_.push_back(read_file(directory / kIndexName));
+  } catch (const InputError&) {
+    return;  // it is rebuilt
   }
-  return arrange(files);
+  ParsedIndex parsed = parse_index(bytes_.front());
+  blocks_ = std::move(parsed.blocks);
+  if (parsed.valid_bytes == state->size && bytes_.front().size() == state->size) saved_ = blocks_.size();
 }
 
 void Catalog::append(const std::string& file, const std::vector<IndexEntry>& entries) {

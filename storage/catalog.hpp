@@ -33,14 +33,14 @@ class Catalog {
     std::vector<Gone> gone;            ///< files that it names and that are not there
   };
 
-  /// Reads the index file unless it is the one that this object read or wrote last. files: the batch files of the
-  /// directory in order of commit; what is known of them is kept, in that order.
-  Changes load(const std::filesystem::path& directory, const std::vector<std::string>& files);
+  /// Reads the index file unless it is the one that this object read or wrote last. Without the lock, before the
+  /// directory is listed: a file that the index names is then there, whatever writers do meanwhile.
+  void load(const std::filesystem::path& directory);
 
   /// Adds what a batch file holds, in order of position. Throws StorageError when the ids are none.
   void append(const std::string& file, const std::vector<IndexEntry>& entries);
 
-  /// Puts the files in the given order and drops what is not among them.
+  /// Puts the files in the given order (that of commit) and drops what is not among them.
   Changes arrange(const std::vector<std::string>& files);
 
   /// Brings the index file up to date: appends to it, or replaces it. To be called under the lock. Returns false when

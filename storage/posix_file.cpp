@@ -71,7 +71,8 @@ std::string read_file(const std::filesystem::path& path) {
     errno = EISDIR;
     throw_errno("cannot read", path);
   }
-  std::string bytes(static_cast<std::size_t>(std::max<off_t>(status.st_size, 0)), '\0');
+  // One byte more, so that the end is seen without another buffer.
+  std::string bytes(static_cast<std::size_t>(std::max<off_t>(status.st_size, 0)) + 1, '\0');
   std::size_t filled = 0;
   while (true) {
     if (filled == bytes.size()) bytes.resize(bytes.size() + 4096);  // the size may be unknown (pipes) or growing

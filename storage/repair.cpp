@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <system_error>
 #include <unordered_set>
 #include <utility>
 
@@ -58,16 +59,18 @@ std::string rewrite(const fs::path& directory, const std::string& damaged, const
   return name;
 }
 
-void set_aside(const fs::path& directory, const std::string& file) {
+/// Gives the file a second name in damaged/; its first one stays until what is intact has been written.
+void keep_aside(const fs::path& directory, const std::string& file) {
   const fs::path folder = directory / kDamagedFolder;
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw InputError(folder.string() + ": cannot make the folder: " + error.message());
   fs::path place = folder / file;
   for (int i = 2; fs::exists(place); ++i) place = folder / (file + "." + std::to_string(i));
-  rename_file(directory / file, place);
+  fs::create_hard_link(directory / file, place, error);
+  if (error) fs::copy_file(directory / file, place, error);  // file systems without links
+  if (error) throw InputError(place.string() + ": cannot set the damaged file aside: " + error.message());
   sync_directory(folder);
-  sync_directory(directory);
 }
 
 class Repair {
@@ -81,7 +84,8 @@ class Repair {
   }
 
   RepairReport run() {
-    const Catalog::Changes known = catalog_.load(directory_, files_);
+    catalog_.load(directory_);
+    const Catalog::Changes known = catalog_.arrange(files_);
     for (const auto& gone : known.gone) {
       report_.files.push_back({gone.file, "the file is missing", {}, gone.entries, true});
     }
@@ -106,15 +110,23 @@ class Repair {
     const std::vector<Record> records = salvage(ReadOnlyFile(directory_ / file));
     DamagedFile damaged{file, *reason, entries_for(records), known.value_or(std::vector<IndexEntry>()),
                         known.has_value()};
-    std::string replacement = file + " rewritten";
+    if (!dry_run_) keep_aside(directory_, file);
+    std::string replacement = file;  // also its name when nothing but the end of the file was lost
     if (!records.empty() && !dry_run_) replacement = rewrite(directory_, file, records, damaged.saved);
-    if (!records.empty() && std::find(kept_.begin(), kept_.end(), replacement) == kept_.end() &&
-        std::find(files_.begin(), files_.end(), replacement) == files_.end()) {
+    const bool listed = replacement != file && std::count(files_.begin(), files_.end(), replacement) > 0;
+    if (!records.empty() && !listed) {  // listed: an earlier run was killed after it had written it
       after_.append(replacement, damaged.saved);
       kept_.push_back(replacement);
     }
-    if (!dry_run_) set_aside(directory_, file);
+    if (!dry_run_ && (records.empty() || replacement != file)) remove_name(file);
     report_.files.push_back(std::move(damaged));
+  }
+
+  void remove_name(const std::string& file) {
+    std::error_code error;
+    fs::remove(directory_ / file, error);
+    if (error) throw InputError((directory_ / file).string() + ": cannot move to damaged/: " + error.message());
+    sync_directory(directory_);
   }
 
   void find_dangling() {

@@ -32,10 +32,10 @@ struct RepairReport {
   std::vector<Dangling> dangling;
 };
 
-/// Reads and checks everything. A damaged file's intact objects are written to a new file of the same number, so that
-/// the order of commit stays; then the damaged file is moved to damaged/; nothing is deleted, and a kill in between is
-/// made up for by the next run. Holds the writers' lock. dry_run: only looks. Throws NewerSchemaError (exit 3) for
-/// files of a newer schema.
+/// Reads and checks everything. A damaged file gets a name in damaged/, its intact objects are written to a new file of
+/// the same number, so that the order of commit stays, and then its first name goes; no byte is deleted, and a kill in
+/// between is made up for by the next run. Holds the writers' lock. dry_run: only looks. Throws NewerSchemaError (exit
+/// 3) for files of a newer schema.
 RepairReport repair(const std::filesystem::path& directory, bool dry_run);
 
 }  // namespace opponens::storage

@@ -102,6 +102,7 @@ struct Store::State {
   std::vector<std::string> unreadable;        // sentences, one per file that cannot be read
   mutable std::unique_ptr<BatchReader> last;  // the file read last
 
+  /// After the catalog was loaded; files: the batch files of the directory, listed after that.
   void refresh(const fs::path& directory, const std::vector<std::string>& files);
   void require_undamaged() const;
   void write_batches(const fs::path& directory, std::size_t number, const std::vector<Record>& records,
@@ -111,6 +112,7 @@ struct Store::State {
 
 Store::Store(fs::path directory, bool create) : directory_(std::move(directory)), state_(std::make_unique<State>()) {
   if (create) create_store(directory_);
+  state_->catalog.load(directory_);
   const std::vector<std::string> files = create ? batch_files(directory_) : require_store(directory_);
   state_->refresh(directory_, files);
   if (!create || fs::exists(directory_ / kIndexName)) return;
@@ -126,7 +128,7 @@ Store& Store::operator=(Store&&) noexcept = default;
 void Store::State::refresh(const fs::path& directory, const std::vector<std::string>& files) {
   missing.clear();
   unreadable.clear();
-  const Catalog::Changes changes = catalog.load(directory, files);
+  const Catalog::Changes changes = catalog.arrange(files);
   for (const auto& file : changes.unknown) {
     try {
       catalog.append(file, BatchReader(directory / file).entries());
@@ -161,6 +163,7 @@ std::vector<std::string> Store::commit(const std::vector<Record>& records) {
     ids.push_back(content_hash(record));
   }
   const DirectoryLock lock(directory_, DirectoryLock::Wait::yes);
+  state_->catalog.load(directory_);
   const std::vector<std::string> names = directory_entries(directory_);
   if (lock.held()) remove_leftovers(directory_, names);
   const std::vector<std::string> files = batch_files(names);

@@ -164,6 +164,10 @@ def mapping():
               for name, first, *_ in FINGERS for i, channel in enumerate(("MCP", "PIP", "DIP"))]
     copied += [("joint_14.0", "T_MCP"), ("joint_15.0", "T_IP")]
     lines = ["mapping:", "  copied:"] + [f"    - {{joint: {j}, channel: {c}}}" for j, c in copied]
+    lines += ["  direct:", "    - {joint: joint_0.0, channel: I_ABD}", "    - {joint: joint_4.0, channel: M_ABD}",
+              "    - {joint: joint_8.0, channel: R_ABD, gain: -1}",
+              "    - {joint: joint_12.0, channel: T_ROT, ranges: true}",
+              "    - {joint: joint_13.0, channel: T_ABD, ranges: true}"]
     return lines + ["  fitted: [joint_0.0, joint_4.0, joint_8.0, joint_12.0, joint_13.0]",
                     "  fingertips: {index: index, middle: middle, ring: ring, thumb: {tip: thumb, from: index}}"]
 

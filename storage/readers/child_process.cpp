@@ -3,6 +3,7 @@
 #include "storage/readers/child_process.hpp"
 
 #include <fcntl.h>
+#include <malloc.h>
 #include <poll.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -17,6 +18,7 @@
 #include <fstream>
 #include <new>
 #include <utility>
+#include <vector>
 
 #include "core/require.hpp"
 #include "storage/posix_file.hpp"
@@ -59,6 +61,14 @@ void enter_limits(const ChildLimits& limits) {
   for (const int stream : {STDOUT_FILENO, STDERR_FILENO}) ::dup2(nothing, stream);
 }
 
+/// Fills what is allocated from now on, and the free memory behind what is allocated already.
+void fill_memory(int byte) {
+  if (byte == 0) return;
+  ::mallopt(M_PERTURB, byte);
+  constexpr std::size_t kBlock = 64 << 10;  // below the size from which each gets pages of its own
+  const std::vector<std::string> blocks(64, std::string(kBlock, static_cast<char>(byte)));
+}
+
 void send(int pipe, const char* bytes, std::size_t count) {
   while (count > 0) {
     const ssize_t sent = ::write(pipe, bytes, count);
@@ -71,6 +81,7 @@ void send(int pipe, const char* bytes, std::size_t count) {
 
 [[noreturn]] void be_child(int pipe, const std::function<std::string()>& work, const ChildLimits& limits) {
   enter_limits(limits);
+  fill_memory(limits.memory_fill);
   char state = kRefusal;
   std::string answer;
   try {

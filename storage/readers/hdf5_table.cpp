@@ -6,12 +6,10 @@
 #include <charconv>
 #include <limits>
 #include <set>
-#include <span>
 
 #include "core/require.hpp"
 #include "storage/hdf5_calls.hpp"
 #include "storage/hdf5_wrappers.hpp"
-#include "storage/posix_file.hpp"
 #include "storage/readers/csv.hpp"
 #include "storage/readers/table.hpp"
 
@@ -124,8 +122,10 @@ void add_attributes(const Handle& group, const SourceDescription& source, Table&
 }  // namespace
 
 std::vector<Table> read_hdf5_tables(const fs::path& file, const SourceDescription& source) {
-  const std::string bytes = read_file(file);
-  const Handle root = hdf5::open_in_memory(std::as_bytes(std::span(bytes)), file.filename().string());
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  const hid_t opened = H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  if (opened < 0) throw InputError(file.string() + ": not an intact HDF5 file: " + hdf5::reason());
+  const Handle root(opened, H5Fclose);
   std::vector<Table> tables;
   if (source.table.group.empty()) {
     tables.push_back(read_group(root, file, source));

@@ -93,15 +93,19 @@ Eigen::MatrixXd angles_of(const Table& table, const fs::path& file, const Source
                           const Survey& survey) {
   const auto rows = static_cast<Eigen::Index>(table.rows());
   const std::size_t first = time_width(source);
+  std::vector<Line> lines;
+  for (const auto channel : survey.kept) {
+    lines.push_back(calibration_of(source.channels[channel], source.unit, survey.raw[channel]));
+  }
   Eigen::MatrixXd angles(rows, static_cast<Eigen::Index>(survey.kept.size()));
-  for (std::size_t j = 0; j < survey.kept.size(); ++j) {
-    const std::size_t channel = survey.kept[j];
-    const Line line = calibration_of(source.channels[channel], source.unit, survey.raw[channel]);
-    for (Eigen::Index i = 0; i < rows; ++i) {
-      const double value = table.values[static_cast<std::size_t>(i) * table.width + first + channel];
+  for (Eigen::Index i = 0; i < rows; ++i) {  // row by row, as the values lie in memory
+    const double* row = table.values.data() + static_cast<std::size_t>(i) * table.width + first;
+    for (std::size_t j = 0; j < lines.size(); ++j) {
+      const double value = row[survey.kept[j]];
+      const Line& line = lines[j];
       const double angle = line.offset == 0.0 ? line.factor * value : line.offset + line.factor * value;
       if (!std::isfinite(angle)) {
-        fail_row(table, file, i, source.channels[channel].column, value, "a finite number");
+        fail_row(table, file, i, source.channels[survey.kept[j]].column, value, "a finite number");
       }
       angles(i, static_cast<Eigen::Index>(j)) = angle;
     }
@@ -244,7 +248,7 @@ void interpret(const Table& table, const RecordingFile& file, const std::string&
   const auto labels = labels_of(table, file, source);
   const Eigen::VectorXd time = times_of(table, file, source);
   const std::vector<Range> trials = trials_of(time, table, file.file, source);
-  const Eigen::MatrixXd angles = angles_of(table, file.file, source, survey);
+  Eigen::MatrixXd angles = angles_of(table, file.file, source, survey);
   const std::string id = table.part.empty() ? file.id : file.id + "_" + table.part;
   for (std::size_t trial = 0; trial < trials.size(); ++trial) {
     const auto [begin, end] = trials[trial];
@@ -261,7 +265,9 @@ void interpret(const Table& table, const RecordingFile& file, const std::string&
     report.sha256 = sha256;
     report.companions = file.companions;
     report.rows = static_cast<int>(rows);
-    Samples samples = process({time.segment(begin, rows), angles.middleRows(begin, rows)}, source, report);
+    Samples samples{time.segment(begin, rows), {}};
+    samples.q = trials.size() == 1 ? std::move(angles) : Eigen::MatrixXd(angles.middleRows(begin, rows));
+    samples = process(std::move(samples), source, report);
     Demonstration& demonstration = recording.demonstration;
     demonstration.id = report.id;
     demonstration.labels = labels;

@@ -27,7 +27,19 @@ std::vector<Table> read_foreign(const fs::path& file, const SourceDescription& s
   const auto work = [&] {
     return to_bytes(matlab ? read_matlab_tables(file, source) : read_hdf5_tables(file, source));
   };
-  return from_bytes(run_limited(file, matlab ? "MATLAB" : "HDF5", work, {}), file, source);
+  const char* kind = matlab ? "MATLAB" : "HDF5";
+  const auto read = [&](int memory_fill) {
+    ChildLimits limits;
+    limits.memory_fill = memory_fill;
+    return run_limited(file, kind, work, limits);
+  };
+  // A damaged file can make a library hand out memory that it never read into: then a second reading differs.
+  const std::string bytes = read(0x55);
+  if (read(0x2B) != bytes) {
+    throw InputError(file.string() + ": the reader of " + kind +
+                     " files gives other values when it reads again: the file is damaged");
+  }
+  return from_bytes(bytes, file, source);
 }
 
 void read_file_tables(RecordingFile file, const SourceDescription& source, const TakeFile& take) {

@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The opponens authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Writes the seeds of the fuzz targets: make_corpus.py FOLDER. All are made here; the source YAMLs are the project's."""
-import json
 import pathlib
 import struct
 import sys
@@ -27,6 +26,16 @@ def numbers(name="X"):
     return matrix(name, 6, (3, 2), element(9, struct.pack("<6d", *range(6))))
 
 
+def index_block(texts, entries, inputs):
+    """A block of index.bin; the target itself makes its size and sum fit."""
+    ends = [sum(map(len, texts[:count + 1])) for count in range(len(texts))]
+    numbers = [len(entries), 0, len(inputs), len(texts), ends[-1], 0]
+    flat = [number for entry in entries for number in entry] + inputs + ends
+    body = struct.pack("<6I", *numbers) + b"".join(bytes([count]) * 32 for count in range(len(entries)))
+    block = bytes(24) + body + struct.pack(f"<{len(flat)}I", *flat) + b"".join(texts)
+    return block + bytes(-len(block) % 8)
+
+
 def seeds():
     csv = b"t,a,b,c\n0,1,2,3\n0.1,359,2.5,3\n0.2,1,1e1,3\n0,1,2,3\n0.1,2,3,4\n"
     yield "csv", b"\0" + csv
@@ -42,8 +51,8 @@ def seeds():
     packed = zlib.compress(numbers())
     yield "mat_layout", mat_file(struct.pack("<II", 15, len(packed)) + packed, numbers("Y"))
     yield "mat_layout", mat_file(matrix("X", 1, (1, 2), numbers("") + numbers("")))
-    entry = {"id": "ab", "kind": "document", "name": "x", "file": "f.h5", "inputs": ["cd"]}
-    yield "index", json.dumps({"schema": 1, "entries": [entry]}).encode()
+    yield "index", index_block([b"f.h5", b"document", b"x"], [(1, 2, 0, 1), (1, 0, 1, 0)], [0])
+    yield "index", index_block([b"f.h5"], [], [])
 
 
 if __name__ == "__main__":

@@ -2,69 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <malloc.h>
 
-#include <chrono>
-#include <set>
+#include <thread>
 
 #include "tests/storage/process.hpp"
 #include "tests/storage/support.hpp"
 
 namespace opponens::storage::test {
 namespace {
-
-/// Commits one record after another until it is killed; tells each number on the pipe once commit has returned.
-void commit_forever(const fs::path& path, int first, int pipe) {
-  Store store(path, true);
-  for (int number = first;; ++number) {
-    store.commit({small_record(number)});
-    if (::write(pipe, &number, sizeof number) != sizeof number) return;
-  }
-}
-
-TEST(KilledWriter, NothingAcknowledgedIsLostAndNothingIsDamaged) {
-  const TemporaryDirectory directory;
-  const fs::path path = directory / "store";
-  Rng rng = stream(3, "kill");
-  std::set<int> acknowledged;
-  int leftovers = 0;
-  int first = 0;
-  std::uint64_t commit_us = 20000;  // as last measured; each kill comes within one commit's time of an acknowledged one
-  for (int kills = 0; kills < 120; ++kills) {
-    int ends[2];
-    ASSERT_EQ(::pipe(ends), 0);
-    const auto started = std::chrono::steady_clock::now();
-    const pid_t child = start([&] { commit_forever(path, first, ends[1]); });
-    ::close(ends[1]);
-    int number = 0;
-    const int awaited = static_cast<int>(rng.index(4));
-    for (int i = 0; i < awaited && ::read(ends[0], &number, sizeof number) == sizeof number; ++i) {
-      acknowledged.insert(number);
-      commit_us =
-          static_cast<std::uint64_t>((std::chrono::steady_clock::now() - started) / std::chrono::microseconds(i + 1));
-    }
-    ::usleep(static_cast<useconds_t>(rng.index(commit_us)));
-    ::kill(child, SIGKILL);
-    int status = 0;
-    ASSERT_EQ(::waitpid(child, &status, 0), child);
-    ASSERT_TRUE(WIFSIGNALED(status)) << "it has to be killed, not to end";
-    while (::read(ends[0], &number, sizeof number) == sizeof number) acknowledged.insert(number);
-    ::close(ends[0]);
-    if (!acknowledged.empty()) first = *acknowledged.rbegin() + 1;
-    if (!fs::exists(path)) continue;
-    for (const auto& entry : fs::directory_iterator(path)) {
-      leftovers += entry.path().filename().string().starts_with(".tmp-") ? 1 : 0;
-    }
-  }
-  Store store(path, true);
-  EXPECT_EQ(store.check(), std::vector<std::string>{});
-  for (const int number : acknowledged) {
-    EXPECT_TRUE(same(store.read(content_hash(small_record(number))), small_record(number)));
-  }
-  EXPECT_GE(acknowledged.size(), 100U);
-  EXPECT_GT(leftovers, 0) << "no kill fell inside a commit";
-  std::cout << acknowledged.size() << " commits acknowledged, " << leftovers << " temporary files seen\n";
-  store.commit({small_record(-1)});
-  for (const auto& [name, bytes] : contents(path)) EXPECT_FALSE(name.starts_with(".tmp-")) << name;
-}
 
 TEST(TwoWriters, LoseNothing) {
   const TemporaryDirectory directory;
@@ -94,6 +38,25 @@ TEST(TwoWriters, LoseNothing) {
       EXPECT_TRUE(same(store.read(content_hash(small_record(number))), small_record(number)));
     }
   }
+}
+
+TEST(Threads, WithAStoreEachReadSideBySide) {
+  const TemporaryDirectory directory;
+  const fs::path path = directory / "store";
+  std::vector<Record> records;
+  for (int i = 0; i < 300; ++i) records.push_back(small_record(i));
+  Store(path, true).commit(records);
+  std::vector<std::size_t> right(4, 0);
+  std::vector<std::thread> threads;
+  for (std::size_t t = 0; t < right.size(); ++t) {
+    threads.emplace_back([&, t] {
+      Store store(path, false);
+      if (t == 3) store.commit({small_record(-1)});  // one writes meanwhile
+      for (const auto& entry : store.list()) right[t] += content_hash(store.read(entry.id)) == entry.id ? 1 : 0;
+    });
+  }
+  for (auto& thread : threads) thread.join();
+  for (const std::size_t count : right) EXPECT_GE(count, records.size());
 }
 
 TEST(Determinism, EqualCommitsGiveEqualBytesWhateverTheHeapHolds) {

@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The opponens authors
 # SPDX-License-Identifier: BSD-3-Clause
 """MATLAB v5 files read and written without any library: numbers and cells (MAT-File Format, MathWorks)."""
+import itertools
 import struct
 import zlib
 
@@ -52,7 +53,7 @@ def array(data):
 
 
 def read(file):
-    """Name -> value."""
+    """Name -> bytes of each array of that name."""
     data = file if isinstance(file, bytes) else open(file, "rb").read()
     if data[124:128] != b"\x00\x01IM":
         raise ValueError("not a MATLAB v5 file of a little-endian machine")
@@ -66,7 +67,7 @@ def read(file):
             (kind, content), = elements(content)
         if kind != 14:
             raise ValueError("not an array")
-        parts = list(elements(content))
+        parts = list(itertools.islice(elements(content), 3))
         found.setdefault(parts[2][1].decode("latin-1"), []).append(content)
     return found
 
