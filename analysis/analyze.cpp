@@ -93,7 +93,7 @@ std::optional<Failure> learn(Group& group, const Movements& found, const Analysi
   }
   form_clusters(group, found.movements);
   const SampleStatistics all = pooled(group.clusters);
-  const Eigen::VectorXd resolution = settings.resolution * found.scale.cwiseInverse();
+  const Eigen::VectorXd resolution = found.resolution * found.scale.cwiseInverse();
   const EffectiveSubspace subspace = effective_subspace(all.covariance, resolution);
   if (subspace.kept.empty()) return Failure{FailureCode::degenerate, title + ": no joint moves"};
 
@@ -120,25 +120,25 @@ std::optional<Failure> learn(Group& group, const Movements& found, const Analysi
 }
 
 /// The second pass: what of each part lies inside the box of all and inside that of the other clusters.
-void count_coverage(std::vector<Group>& groups, const Movements& found, const RecordingSource& source,
+void count_coverage(std::vector<Group>& groups, const Movements& found, int order, const RecordingSource& source,
                     const Reading& reading) {
-  std::vector<std::size_t> order(found.movements.size());  // movements in the order of the source
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::sort(order.begin(), order.end(),
+  std::vector<std::size_t> sorted(found.movements.size());  // movements in the order of the source
+  for (std::size_t i = 0; i < sorted.size(); ++i) sorted[i] = i;
+  std::sort(sorted.begin(), sorted.end(),
             [&](std::size_t a, std::size_t b) { return found.movements[a].index < found.movements[b].index; });
   std::vector<std::size_t> indices;
-  for (const std::size_t movement : order) indices.push_back(found.movements[movement].index);
-  std::vector<std::vector<std::pair<Group*, Part*>>> parts(order.size());  // by movement
+  for (const std::size_t movement : sorted) indices.push_back(found.movements[movement].index);
+  std::vector<std::vector<std::pair<Group*, Part*>>> parts(sorted.size());  // by movement
   for (Group& group : groups) {
     for (Part& part : group.parts) parts[part.movement].emplace_back(&group, &part);
   }
   const Eigen::VectorXd inverse = found.scale.cwiseInverse();
   for_each_recording(source, indices, reading, [&](std::size_t place, const Demonstration& recording) {
-    const Movement& movement = found.movements[order[place]];
+    const Movement& movement = found.movements[sorted[place]];
     require(recording.id == movement.id && recording.q_h.rows() == movement.samples,
             "analyze: recording " + movement.id + " is another one in the second pass");
-    const Eigen::MatrixXd x = recording.q_h * inverse.asDiagonal();
-    for (const auto& [group, part] : parts[order[place]]) {
+    const Eigen::MatrixXd x = analysed_values(recording, order) * inverse.asDiagonal();
+    for (const auto& [group, part] : parts[sorted[place]]) {
       const auto rows = part->before ? x.topRows(movement.begin) : x.bottomRows(movement.samples - movement.begin);
       part->in_sample = count_inside(group->all, rows, movement.weight);
       if (!group->others.empty()) {
@@ -177,6 +177,7 @@ void validate(const AnalysisSettings& settings) {
           "AnalysisSettings: replicates must be >= 2, is " + std::to_string(settings.replicates));
   require(!settings.min_window || *settings.min_window >= 2, "AnalysisSettings: min_window must be >= 2 samples");
   require(!settings.group_by.empty(), "AnalysisSettings: group_by must name a label");
+  require(settings.order == 0 || settings.order == 1, "AnalysisSettings: order must be 0 or 1");
   if (settings.normalize_by) {
     const JointRanges& ranges = *settings.normalize_by;
     require(ranges.lower.size() == ranges.upper.size() && ranges.lower.allFinite() && ranges.upper.allFinite() &&
@@ -205,10 +206,11 @@ Result<Analysis> analyze(const RecordingSource& source, const AnalysisSettings& 
   const Reading second{reading.threads, [&](std::size_t done, std::size_t) {
                          if (reading.progress) reading.progress(source.count + done, 2 * source.count);
                        }};
-  count_coverage(groups, *found, source, second);
+  count_coverage(groups, *found, settings.order, source, second);
 
   Analysis analysis;
   analysis.synergies.joint_names = found->joint_names;
+  analysis.synergies.order = settings.order;
   for (Group& group : groups) {
     report_coverage(group, settings);
     if (analysis.groups.empty()) {

@@ -31,7 +31,8 @@ struct AnalysisSettings {
   double beta = 0.05;                                                   ///< fraction of variance left out, in (0, 1)
   std::optional<TransitionRule> transition = TransitionRule::likeness;  ///< nullopt: no split, all samples per group
   BoxRoot box_root = BoxRoot::n;
-  std::string group_by = "family";          ///< label that forms the groups
+  std::string group_by = "family";  ///< label that forms the groups; several with commas between
+  int order = 0;  ///< 0: synergies of joint positions; 1: first-order synergies, of joint velocities (rad/s)
   std::optional<JointRanges> normalize_by;  ///< nullopt: radians; else x = q ./ (upper - lower)
   double resolution = 0.0087;               ///< rad, of the sensors (CyberGlove: 0.5 degrees)
   std::optional<int> min_window;            ///< samples on each side of a transition; default: effective dof + 1
@@ -45,6 +46,10 @@ struct AnalysisSettings {
 void validate(const AnalysisSettings& settings);
 
 TransitionSettings transition_settings(const AnalysisSettings& settings);
+
+/// The group of a recording: the value of the label, or the values of several joined by "/" ("subject,object" gives
+/// "1/scissors"). nullopt when it lacks one of them.
+std::optional<std::string> group_of(const Demonstration& recording, const std::string& group_by);
 
 struct GroupReport {
   std::string name;     ///< as in the synergy set
@@ -79,11 +84,14 @@ struct Analysis {
 /// samples from the transition on, per value of the group_by label. Without a split the groups hold all samples and
 /// the "pre-grasp" entry is their pool, both with phase "all". Recordings labelled kind = "free" are no movements to a
 /// grasp; they give the human-likeness reference only. A group's clusters are its subjects, or its recordings when it
-/// has one subject. The result does not depend on the order of the demonstrations, except that of `transitions`.
+/// has one subject. First-order synergies (order 1) are learnt in the same way from the velocities of the same samples,
+/// split where the positions are; an angle's resolution r then counts as r / (sqrt(2) d) for the median sampling step
+/// d. The result does not depend on the order of the demonstrations, except that of `transitions`.
 ///
 /// Failure, with a sentence naming the recording or group: invalid_input (no movements, a recording given twice, joints
-/// that differ, a label absent, samples not finite, time that does not increase), too_few_samples (a recording too
-/// short to split; a group with no more samples than joints), degenerate (nothing moves).
+/// that differ, a label absent, postures without time that are to be split or differentiated, samples not finite, time
+/// that does not increase), too_few_samples (a recording too short to split; a group with no more samples than joints),
+/// degenerate (nothing moves).
 ///
 /// Every recording is read twice: for its transition and moments, then for the coverage of boxes that were learnt from
 /// the others. Two batches of recordings are in memory at a time; of each movement about 10 n^2 numbers stay. The

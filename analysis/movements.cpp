@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "analysis/statistics.hpp"
+#include "analysis/velocity.hpp"
 #include "core/require.hpp"
 
 namespace opponens::analysis {
@@ -62,6 +63,25 @@ Result<TransitionReport> find_transition(const Demonstration& demonstration, con
   return report;
 }
 
+/// Why a movement cannot be analysed as it is asked for.
+std::optional<Failure> unfit(const Demonstration& recording, const std::string& group,
+                             const AnalysisSettings& settings) {
+  const std::string name = "recording " + recording.id;
+  if (group.empty()) {
+    return Failure{FailureCode::invalid_input, name + " has no label '" + settings.group_by + "' to group by"};
+  }
+  if (label(recording, "kind") != "postures") return std::nullopt;
+  if (settings.transition) {
+    return Failure{FailureCode::invalid_input, name +
+                                                   " holds postures without time: it has no phases to split; analyse " +
+                                                   "such recordings with --phase none"};
+  }
+  if (settings.order == 1) {
+    return Failure{FailureCode::invalid_input, name + " holds postures without time: they have no velocities"};
+  }
+  return std::nullopt;
+}
+
 /// Everything about one recording that does not need another.
 Found examine(const Demonstration& recording, const Movements& all, const AnalysisSettings& settings) {
   Found found;
@@ -75,14 +95,13 @@ Found examine(const Demonstration& recording, const Movements& all, const Analys
   }
   Movement& movement = found.movement;
   movement.subject = label(recording, "subject");
-  movement.group = label(recording, settings.group_by);
+  movement.group = group_of(recording, settings.group_by).value_or("");
   movement.weight = recording.weight;
   movement.samples = static_cast<int>(recording.q_h.rows());
-  if (movement.group.empty()) {
-    found.failure = Failure{FailureCode::invalid_input,
-                            "recording " + recording.id + " has no label '" + settings.group_by + "' to group by"};
-    return found;
-  }
+  found.failure = unfit(recording, movement.group, settings);
+  if (found.failure) return found;
+  const Eigen::MatrixXd values = analysed_values(recording, settings.order);
+  if (settings.order == 1) movement.noise_gain = velocity_noise_gain(recording.time);
   if (settings.transition) {
     Result<TransitionReport> report = find_transition(recording, settings);
     if (!report) {
@@ -91,11 +110,11 @@ Found examine(const Demonstration& recording, const Movements& all, const Analys
     }
     movement.begin =
         *settings.transition == TransitionRule::likeness ? report->likeness.index : report->changepoint.index;
-    movement.before = scaled(moments(recording.q_h.topRows(movement.begin), movement.weight), all.scale);
+    movement.before = scaled(moments(values.topRows(movement.begin), movement.weight), all.scale);
     found.transition = std::move(*report);
   }
   const Eigen::Index rest = movement.samples - movement.begin;
-  movement.after = scaled(moments(recording.q_h.bottomRows(rest), movement.weight), all.scale);
+  movement.after = scaled(moments(values.bottomRows(rest), movement.weight), all.scale);
   return found;
 }
 
@@ -117,7 +136,32 @@ Eigen::VectorXd scale_of(const AnalysisSettings& settings, Eigen::Index joints) 
   return settings.normalize_by->upper - settings.normalize_by->lower;
 }
 
+double median_noise_gain(const std::vector<Movement>& movements) {
+  std::vector<double> gains;
+  for (const Movement& movement : movements) gains.push_back(movement.noise_gain);
+  const auto middle = gains.begin() + static_cast<std::ptrdiff_t>(gains.size() / 2);
+  std::nth_element(gains.begin(), middle, gains.end());
+  return *middle;
+}
+
 }  // namespace
+
+std::optional<std::string> group_of(const Demonstration& recording, const std::string& group_by) {
+  std::string name;
+  std::size_t begin = 0;
+  while (begin <= group_by.size()) {
+    const std::size_t end = std::min(group_by.find(',', begin), group_by.size());
+    const std::string value = label(recording, group_by.substr(begin, end - begin));
+    if (value.empty()) return std::nullopt;
+    name += (begin == 0 ? "" : "/") + value;
+    begin = end + 1;
+  }
+  return name;
+}
+
+Eigen::MatrixXd analysed_values(const Demonstration& recording, int order) {
+  return order == 0 ? recording.q_h : joint_velocities(recording.time, recording.q_h);
+}
 
 Result<Movements> read_movements(const RecordingSource& source, const AnalysisSettings& settings,
                                  const Reading& reading) {
@@ -145,6 +189,7 @@ Result<Movements> read_movements(const RecordingSource& source, const AnalysisSe
     result.movements.push_back(std::move(one.movement));
   }
   if (result.movements.empty()) return failure(FailureCode::invalid_input, "no movements to analyze");
+  result.resolution = settings.resolution * median_noise_gain(result.movements);
   std::stable_sort(result.movements.begin(), result.movements.end(), [](const Movement& a, const Movement& b) {
     return std::pair(a.id, a.source) < std::pair(b.id, b.source);
   });

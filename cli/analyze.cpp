@@ -13,6 +13,7 @@
 #include "robot/load_robot.hpp"
 #include "robot/robot_model.hpp"
 #include "storage/codec.hpp"
+#include "storage/readers/source.hpp"
 
 namespace opponens::cli {
 namespace {
@@ -60,6 +61,7 @@ AnalysisSettings settings_from(const AnalyzeOptions& options, const storage::Sto
   settings.beta = options.beta;
   settings.box_root = box_root(options.box_root);
   settings.group_by = options.group_by;
+  settings.order = options.order;
   settings.seed = options.common.seed;
   if (options.phase == "none") {
     settings.transition.reset();
@@ -124,6 +126,7 @@ Json analysis_json(const Analysis& found, const AnalysisSettings& settings) {
   const auto groups = groups_in_order(found.synergies);
   for (std::size_t i = 0; i < groups.size(); ++i) result["groups"].push_back(group_json(*groups[i], found.groups[i]));
   result["joint_names"] = found.synergies.joint_names;
+  result["order"] = found.synergies.order;
   result["transitions"] = Json::array();
   using analysis::TransitionRule;
   const auto first = settings.transition.value_or(TransitionRule::likeness);
@@ -150,8 +153,8 @@ void say_groups(const Console& console, const Analysis& found) {
 
 Json parameters_json(const AnalyzeOptions& options) {
   return {{"alpha", options.alpha},       {"beta", options.beta},         {"transition", options.transition},
-          {"box_root", options.box_root}, {"group_by", options.group_by}, {"space", options.space},
-          {"phase", options.phase},       {"input", options.input}};
+          {"box_root", options.box_root}, {"group_by", options.group_by}, {"order", options.order},
+          {"space", options.space},       {"phase", options.phase},       {"input", options.input}};
 }
 
 }  // namespace

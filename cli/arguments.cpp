@@ -104,7 +104,11 @@ void declare_analyze(CLI::App& app, AnalyzeOptions& options) {
   app.add_option("--box-root", options.box_root, "Root of 1 - alpha that sizes the box")
       ->check(CLI::IsMember({"n", "k", "literal"}))
       ->capture_default_str();
-  app.add_option("--group-by", options.group_by, "Label that groups the grasp phases")->capture_default_str();
+  app.add_option("--group-by", options.group_by, "Label that groups the grasp phases; several: subject,object")
+      ->capture_default_str();
+  app.add_option("--order", options.order, "0: synergies of joint positions; 1: of joint velocities")
+      ->check(CLI::IsMember({0, 1}))
+      ->capture_default_str();
   app.add_option("--space", options.space, "Unit of the joints: rad, or their ranges")
       ->check(CLI::IsMember({"rad", "normalized"}))
       ->capture_default_str();

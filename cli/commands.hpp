@@ -49,6 +49,7 @@ struct AnalyzeOptions {
   std::string transition = "likeness";
   std::string box_root = "n";
   std::string group_by = "family";
+  int order = 0;
   std::string space = "rad";
   std::string phase = "both";  ///< both | none
   std::string input{};         ///< hand | glove; empty: hand when there is any

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "core/require.hpp"
-#include "report/hand_drawing.hpp"
 #include "report/line_plot.hpp"
 #include "report/paper_tables.hpp"
 #include "report/sections.hpp"
@@ -34,20 +33,6 @@ bool is_pre_grasp(const SynergyItem& item) { return item.group.phase == "pre-gra
 const PaperVariance* reference_of(const SynergyPart& part, const SynergyItem& item) {
   if (is_pre_grasp(item)) return paper_variance("pre-grasp");
   return part.grouped_by == "family" && item.group.phase == "grasp" ? paper_variance(item.group.name) : nullptr;
-}
-
-void check(const SynergyPart& part) {
-  const auto n = static_cast<Eigen::Index>(part.joint_names.size());
-  for (const auto& item : part.groups) {
-    const auto& group = item.group;
-    const auto fits = [&](Eigen::Index size) { return size == n || size == 0; };
-    require(group.basis.variance.size() == n && group.basis.mean.size() == n && group.basis.axes.rows() == n &&
-                group.basis.axes.cols() == n && group.box.scale.size() == n && group.box.half_width.size() <= n &&
-                fits(item.cumulative_low.size()) && item.cumulative_high.size() == item.cumulative_low.size(),
-            [&] {
-              return concat({"synergy group '", group.name, "': sizes do not fit the joint names"});
-            });
-  }
 }
 
 /// Percent at which the plots of all groups start, so that they can be compared by eye.
@@ -214,46 +199,26 @@ std::string comparison_words(const SynergyPart& part) {
                  "drawn dashed as context, and the table is given in full below."});
 }
 
-constexpr double kDrawnDeviations = 1.5;  ///< standard deviations from the mean that a drawing shows
-constexpr Eigen::Index kDrawnSynergies = 3;
-
-/// The hand at q as far as its limits let it, with the words that tell where they do not.
-Posture posture(const robot::RobotModel& hand, const std::vector<std::string>& joint_names, const Eigen::VectorXd& q,
-                const std::string& name) {
-  const Eigen::VectorXd wanted = by_name(hand, joint_names, q, rest_configuration(hand));
-  const Eigen::VectorXd reached = hand.clip(wanted);
-  const double clipped = (wanted - reached).cwiseAbs().maxCoeff();
-  return {reached, clipped < 0.005 ? name : concat({name, ", clipped by ", fixed(clipped, 2)})};
-}
-
-Markup draw_synergy(const robot::RobotModel& hand, const RobotFacets& facets, const SynergyPart& part,
-                    const SynergyItem& item, Eigen::Index i) {
-  const auto& group = item.group;
-  const double reach = kDrawnDeviations * std::sqrt(std::max(0.0, group.basis.variance[i]));
-  std::vector<Posture> postures;
-  for (const int side : {-1, 0, 1}) {
-    const Eigen::VectorXd x = group.basis.mean + side * reach * group.basis.axes.col(i);
-    const Eigen::VectorXd q = group.box.scale.cwiseProduct(x);
-    postures.push_back(posture(hand, part.joint_names, q,
-                               side == 0  ? "mean"
-                               : side < 0 ? "mean - 1.5 s"
-                                          : "mean + 1.5 s"));
-  }
-  const double total = group.basis.variance.sum();
-  const double share = total > 0.0 ? group.basis.variance[i] / total : 0.0;
-  const std::string name = concat({"Synergy ", std::to_string(i + 1), " of ", group.name});
-  const std::string caption = concat({"Synergy ", std::to_string(i + 1), ": ", percent(share),
-                                      " of the variance, s = ", fixed(reach / kDrawnDeviations, 2),
-                                      i < group.box.half_width.size() ? "" : " (beyond k)"});
-  return figure(draw_postures(hand, facets, postures, name, 172.0, 190.0), caption);
-}
-
 }  // namespace
+
+void check_sizes(const SynergyPart& part) {
+  const auto n = static_cast<Eigen::Index>(part.joint_names.size());
+  for (const auto& item : part.groups) {
+    const auto& group = item.group;
+    const auto fits = [&](Eigen::Index size) { return size == n || size == 0; };
+    require(group.basis.variance.size() == n && group.basis.mean.size() == n && group.basis.axes.rows() == n &&
+                group.basis.axes.cols() == n && group.box.scale.size() == n && group.box.half_width.size() <= n &&
+                fits(item.cumulative_low.size()) && item.cumulative_high.size() == item.cumulative_low.size(),
+            [&] {
+              return concat({"synergy group '", group.name, "': sizes do not fit the joint names"});
+            });
+  }
+}
 
 Markup synergy_section(const ReportInput& input) {
   if (!input.synergies) return note("The demonstrations have not been analysed yet: no synergies.");
   const auto& part = *input.synergies;
-  check(part);
+  check_sizes(part);
   Markup out =
       paragraph(concat({"Synergies are the principal axes of the hand's joint positions in one phase: of all "
                         "movements together before the transition, of each group after it. k is the number of "
@@ -273,29 +238,6 @@ Markup synergy_section(const ReportInput& input) {
                  coverage_plot(part, &SynergyItem::reduced_box, "the first k coordinates")});
   out += coverage_table(part);
   out += details("Table 1 of the paper", paper_table());
-  return out;
-}
-
-Markup synergy_drawing_section(const ReportInput& input) {
-  if (!input.synergies) return note("No synergies to draw.");
-  if (!input.hand) return note("The hand's model was not given: its shape cannot be drawn.");
-  check(*input.synergies);
-  const RobotFacets facets = robot_facets(*input.hand, 2400);
-  Markup out = paragraph(
-      "The robot hand at the mean of each group and 1.5 standard deviations s to both sides along its first three "
-      "synergies, clipped to the joint limits where that reaches beyond them (the words say by how much at most, "
-      "rad).");
-  for (const auto& item : input.synergies->groups) {
-    out += subheading(item.group.name == "pre-grasp"
-                          ? "Pre-grasp"
-                          : concat({item.group.phase == "grasp" ? "Grasp phase, " : "Whole movement, ",
-                                    input.synergies->grouped_by, " ", item.group.name}));
-    std::vector<Markup> drawings;
-    for (Eigen::Index i = 0; i < std::min(kDrawnSynergies, item.group.basis.variance.size()); ++i) {
-      drawings.push_back(draw_synergy(*input.hand, facets, *input.synergies, item, i));
-    }
-    out += row_of(drawings);
-  }
   return out;
 }
 

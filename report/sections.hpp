@@ -24,6 +24,9 @@ Markup verification_section(const ReportInput& input);
 Markup provenance_section(const ReportInput& input);
 Markup run_section(const ReportInput& input);
 
+/// Throws std::invalid_argument when the sizes of a group do not fit the joint names.
+void check_sizes(const SynergyPart& part);
+
 /// Joint values over time as charts of at most `chunk` joints each, with vertical lines at the given times.
 struct TimeMark {
   std::string label;

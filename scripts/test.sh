@@ -27,8 +27,10 @@ run_fuzzers() {  # SECONDS
   for target in "$ROOT"/build/fuzz/tests/fuzz/*_fuzz; do
     name="$(basename "$target" _fuzz)"
     say "Fuzzing $name ($1 s)"
-    "$target" -max_total_time="$1" -timeout=20 -rss_limit_mb=2048 -max_len=4096 -verbosity=0 -print_final_stats=1 \
-      -artifact_prefix="$ROOT/build/fuzz/$name-" "$work/$name"
+    "$target" -max_total_time="$1" -timeout=20 -rss_limit_mb=2048 -max_len=4096 -print_final_stats=1 \
+      -artifact_prefix="$ROOT/build/fuzz/$name-" "$work/$name" >"$ROOT/build/fuzz/$name.log" 2>&1 ||
+      { tail -n 60 "$ROOT/build/fuzz/$name.log"; exit 1; }
+    grep number_of_executed_units "$ROOT/build/fuzz/$name.log"
   done
 }
 

@@ -19,7 +19,7 @@ constexpr std::uint32_t kCell = 1;
 constexpr std::uint32_t kFirstNumeric = 6;  // double, single, int8 ... uint64
 constexpr std::uint32_t kLastNumeric = 15;
 constexpr std::uint32_t kComplex = 0x0800;
-constexpr std::size_t kHeader = 128;
+constexpr std::size_t kFileHeader = 128;
 constexpr std::size_t kMostInflated = std::size_t{1} << 30;
 constexpr int kDeepest = 4;  // cells in cells
 
@@ -183,8 +183,8 @@ bool check_array(Walker& walker, const Element& element, const std::string& vari
 }  // namespace
 
 void check_mat_layout(std::string_view bytes, const std::string& variable, const std::filesystem::path& file) {
-  Walker walker(bytes.substr(std::min(kHeader, bytes.size())), file, kHeader);
-  walker.expect(bytes.size() > kHeader, "it has no header of 128 bytes");
+  Walker walker(bytes.substr(std::min(kFileHeader, bytes.size())), file, kFileHeader);
+  walker.expect(bytes.size() > kFileHeader, "it has no header of 128 bytes");
   walker.expect(bytes.substr(124, 4) == std::string_view("\x00\x01IM", 4),
                 "the header does not say version 1, little-endian (version 7.3 is HDF5; save with -v7)");
   int found = 0;
@@ -195,7 +195,7 @@ void check_mat_layout(std::string_view bytes, const std::string& variable, const
       continue;
     }
     const std::string plain = inflated(walker, element.data);
-    Walker inner(plain, file, kHeader);
+    Walker inner(plain, file, kFileHeader);
     const Element array = inner.next();
     found += check_array(inner, array, variable) ? 1 : 0;
     inner.expect(inner.empty(), "more than one array in a compressed element");

@@ -8,7 +8,7 @@ import unittest
 
 import h5py
 
-from support import must, run, start
+from support import SOURCE, must, run, start
 
 YAML = """name: batches
 recordings: {files: '([0-9]+)\\.txt', parts: [number]}
@@ -91,6 +91,33 @@ class Batches(unittest.TestCase):
         summary = must(*self.arguments(), "--dry-run")["summary"]
         self.assertEqual((summary["gaps"], summary["largest_step_s"], summary["recordings"]), (1, 7.0, 3))
         self.assertFalse(self.store.exists())
+
+    def test_a_robot_hand_goes_out_as_robomimic_and_comes_back(self):
+        (self.folder / "data").mkdir()
+        names = [f"joint_{joint}.0" for joint in range(16)]
+        lines = [",".join(["t_s", *names])]
+        lines += [",".join(f"{value:.6f}" for value in [row / 300, *(0.1 + 0.001 * row * (joint + 1)
+                                                                     for joint in range(16))]) for row in range(90)]
+        (self.folder / "data" / "allegro_ros_jointstates.csv").write_text("\n".join(lines) + "\n")
+        sources = SOURCE / "models" / "sources"
+        first = must("ingest", self.folder / "data", "--source", sources / "allegro_rosbag.yaml", "--store", self.store)
+        out = self.folder / "out.hdf5"
+        must("export", *first["ids"], "--store", self.store, "--format", "robomimic", "--out", out)
+        second = must("ingest", out, "--source", sources / "robomimic.yaml", "--store", self.folder / "other")
+        for key in ("samples", "channels"):
+            self.assertEqual(second["summary"][key], first["summary"][key])
+        self.assertEqual(must("show", "--store", self.folder / "other")["objects"][0]["kind"], "hand_demonstration")
+
+    def test_postures_have_no_phases(self):
+        self.record(4, rows=30)
+        yaml = YAML.replace("{column: '1'}", "none").replace("[{column: '2', joint: I_MCP}]",
+                                                              "[{column: '1', joint: I_MCP}, {column: '2', joint: I_PIP}]")
+        (self.folder / "source.yaml").write_text(yaml)
+        must(*self.arguments())
+        code, _, err = run("analyze", "--store", self.store, "--group-by", "source")
+        self.assertEqual(code, 2)
+        self.assertIn("holds postures without time: it has no phases to split", err)
+        must("analyze", "--store", self.store, "--group-by", "source", "--phase", "none")
 
     def test_foreign_files_that_are_none_are_refused(self):
         (self.folder / "data").mkdir()

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <functional>
 #include <regex>
+#include <set>
 #include <sstream>
 
 #include <gtest/gtest.h>
@@ -177,6 +178,40 @@ TEST(Report, EveryMissingPartBecomesASentence) {
   const std::string empty = render_report(ReportInput{});
   expect_sound(empty);
   EXPECT_TRUE(contains(empty, "10. Run"));
+}
+
+TEST(Report, EveryPictureIsAFileOfItsOwn) {
+  const std::string page = render_report(small());
+  const auto files = svg_files(page);
+  std::size_t drawn = 0;
+  for (std::size_t at = page.find("<svg"); at != std::string::npos; at = page.find("<svg", at + 1)) ++drawn;
+  EXPECT_GT(drawn, 10u);
+  ASSERT_EQ(files.size(), drawn);
+  std::set<std::string> names;
+  for (const SvgFile& file : files) {
+    EXPECT_TRUE(names.insert(file.name).second) << file.name;
+    EXPECT_TRUE(file.content.starts_with("<?xml")) << file.name;
+    EXPECT_TRUE(contains(file.content, "xmlns=\"http://www.w3.org/2000/svg\"")) << file.name;
+    EXPECT_TRUE(contains(file.content, "--fg:")) << file.name << " needs the colours";
+    EXPECT_FALSE(contains(file.content, "@media")) << file.name;
+  }
+  EXPECT_TRUE(names.contains("synergies_1.svg"));
+  EXPECT_TRUE(names.contains("shapes_1.svg"));
+}
+
+TEST(Report, CoverageAndTheMappingAreShown) {
+  ReportInput input = small();
+  input.demonstrations->mapping = "fingertip";
+  input.demonstrations->tip_residuals = {{"thumb", 0.0131}};
+  input.demonstrations->clamped_shares = {{"joint_15.0", 0.493}};
+  input.transitions->others.push_back(*input.transitions->example);
+  input.transitions->chosen_by = "Chosen by lot.";
+  const std::string page = render_report(input);
+  expect_sound(page);
+  for (const char* words : {"13.1", "joint_15.0", "49.3", "Chosen by lot.", "Coverage of the full box", "held out (bar",
+                            "Synergy 3:", "mean + 1.5 s"}) {
+    EXPECT_TRUE(contains(page, words)) << words;
+  }
 }
 
 TEST(Report, HostileTextStaysText) {

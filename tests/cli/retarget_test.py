@@ -1,0 +1,60 @@
+# SPDX-FileCopyrightText: 2026 The opponens authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""retarget: the mappings, what they report and store, and what they refuse."""
+import pathlib
+import shutil
+import tempfile
+import unittest
+
+from support import SHARED, must, run
+
+SHADOW = SHARED / "data/robots/dex-urdf/robots/hands/shadow_hand/shadow_hand_right.urdf"
+
+
+class Retarget(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.folder)
+        self.store = self.folder / "store"
+        self.assertEqual(run("simulate", "--store", self.store, "--repetitions", 2, "--quiet")[0], 0)
+
+    def retarget(self, *more):
+        store = self.folder / "copy"
+        shutil.rmtree(store, ignore_errors=True)
+        shutil.copytree(self.store, store)
+        return must("retarget", "--store", store, *more)
+
+    def test_same_whatever_the_threads(self):
+        one = self.retarget("--mapping", "fingertip", "--threads", 1)
+        two = self.retarget("--mapping", "fingertip", "--threads", 2)
+        self.assertEqual(one, two, "ids are hashes of all that is stored")
+        self.assertEqual({tip["name"] for tip in one["tips"]}, {"index", "middle", "ring", "thumb"})
+        self.assertLess(one["tip_residual_rms_m"], 0.02)
+        self.assertEqual(len(one["clamped_share"]), 16)
+        self.assertGreater(one["alignment"]["scale"], 1.0)
+        paper = self.retarget("--mapping", "paper")
+        self.assertGreater(paper["tip_residual_rms_m"], 2 * one["tip_residual_rms_m"])
+        larger = self.retarget("--mapping", "fingertip", "--hand-length", 0.21)
+        self.assertEqual(larger["alignment"], one["alignment"], "it belongs to the robot")
+        self.assertNotEqual(larger["ids"], one["ids"])
+
+    def test_refuses_what_has_no_effect(self):
+        code, _, said = run("retarget", "--store", self.store, "--hand-length", 0.2)
+        self.assertEqual(code, 2)
+        self.assertIn("--hand-length", said)
+
+    def test_a_hand_without_its_urdf_says_so(self):
+        code, _, said = run("retarget", "--store", self.store, "--hand", "models/shadow_hand/shadow_right.yaml",
+                            env={"DEX_URDF": "/nowhere"})
+        self.assertEqual(code, 2)
+        self.assertIn("shadow_right.yaml", said)
+
+    @unittest.skipUnless(SHADOW.exists(), f"{SHADOW} is absent")
+    def test_another_hand_from_its_own_urdf(self):
+        found = self.retarget("--hand", "models/shadow_hand/shadow_right.yaml", "--urdf", SHADOW, "--mapping", "joint")
+        self.assertEqual(len(found["tips"]), 5)
+        self.assertEqual(len(found["clamped_share"]), 22)
+
+
+if __name__ == "__main__":
+    unittest.main()
