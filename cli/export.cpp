@@ -11,7 +11,7 @@
 #include "cli/records.hpp"
 #include "cli/stored.hpp"
 #include "core/require.hpp"
-#include "storage/draft.hpp"
+#include "storage/posix_file.hpp"
 #include "storage/robomimic.hpp"
 #include "storage/single_file.hpp"
 

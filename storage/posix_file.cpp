@@ -185,4 +185,7 @@ DirectoryLock::DirectoryLock(const std::filesystem::path& directory, Wait wait)
 
 DirectoryLock::~DirectoryLock() { ::close(descriptor_); }
 
+Draft::Draft(std::filesystem::path final_path)
+    : final_(std::move(final_path)), path_(final_.string() + ".tmp-" + std::to_string(::getpid())) {}
+
 }  // namespace opponens::storage

@@ -85,4 +85,22 @@ class DirectoryLock {
   bool held_ = false;
 };
 
+/// A file that is written under another name until it is complete; removed when it never is.
+class Draft {
+ public:
+  explicit Draft(std::filesystem::path final_path);
+  ~Draft() {
+    std::error_code ignored;
+    std::filesystem::remove(path_, ignored);
+  }
+  Draft(const Draft&) = delete;
+  Draft& operator=(const Draft&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+  void complete() const { rename_file(path_, final_); }
+
+ private:
+  std::filesystem::path final_;
+  std::filesystem::path path_;
+};
+
 }  // namespace opponens::storage

@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "core/require.hpp"
-#include "storage/draft.hpp"
 #include "storage/hdf5_wrappers.hpp"
+#include "storage/posix_file.hpp"
 
 namespace opponens::storage {
 namespace {

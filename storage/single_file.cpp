@@ -9,7 +9,7 @@
 #include "core/require.hpp"
 #include "storage/batch_file.hpp"
 #include "storage/contents.hpp"
-#include "storage/draft.hpp"
+#include "storage/posix_file.hpp"
 
 namespace opponens::storage {
 namespace {

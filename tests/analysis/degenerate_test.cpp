@@ -42,7 +42,8 @@ std::vector<Demonstration> plain(int count, int samples = 120) {
   std::vector<Demonstration> result;
   for (int i = 0; i < count; ++i) {
     Rng rng = test::numbered_stream(70, "plain/", i);
-    result.push_back(labelled(test::two_phases(samples, 4, 0.5, 0.02, rng), "r" + std::to_string(i)));
+    result.push_back(
+        labelled(test::two_phases(samples, 4, 0.5, 0.02, rng), std::string("r").append(std::to_string(i))));
   }
   return result;
 }

@@ -19,7 +19,7 @@ std::vector<Demonstration> movements() {
   for (int i = 0; i < 6; ++i) {
     Rng rng = test::numbered_stream(47, "first order/", i);
     Demonstration movement = test::two_phases(80, 5, 0.5, 0.004, rng);
-    movement.id = "m" + std::to_string(i);
+    movement.id = std::string("m").append(std::to_string(i));
     movement.labels = {{"subject", i < 3 ? "1" : "2"}, {"object", i % 2 == 0 ? "cup" : "pen"}};
     result.push_back(movement);
   }
