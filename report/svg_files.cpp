@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <map>
 
+#include "core/require.hpp"
 #include "report/html.hpp"
 #include "report/report.hpp"
 #include "report/text.hpp"
@@ -32,14 +33,30 @@ std::string anchor_at(const std::string& page, std::size_t place) {
   return page.substr(begin, page.find('"', begin) - begin);
 }
 
+/// Past the end of the picture that begins there; clips inside it are <svg> elements too.
+std::size_t end_of_picture(const std::string& page, std::size_t begin) {
+  const std::string open = "<svg";
+  const std::string close = "</svg>";
+  std::size_t at = begin + open.size();
+  for (int depth = 1; depth > 0;) {
+    const std::size_t end = page.find(close, at);
+    require(end != std::string::npos, "svg_files: a picture of the page is not closed");
+    const std::size_t inner = page.find(open, at);
+    depth += inner < end ? 1 : -1;
+    at = inner < end ? inner + open.size() : end + close.size();
+  }
+  return at;
+}
+
 }  // namespace
 
 std::vector<SvgFile> svg_files(const std::string& page) {
   const std::string style = concat({"<style>\n", light_style(), "</style>"});
   std::vector<SvgFile> files;
   std::map<std::string, int> counts;
-  for (std::size_t begin = page.find("<svg"); begin != std::string::npos; begin = page.find("<svg", begin + 1)) {
-    const std::size_t end = page.find("</svg>", begin) + 6;
+  std::size_t end = 0;
+  for (std::size_t begin = page.find("<svg"); begin != std::string::npos; begin = page.find("<svg", end)) {
+    end = end_of_picture(page, begin);
     std::string svg = page.substr(begin, end - begin);
     const std::string anchor = anchor_at(page, begin);
     const int number = ++counts[anchor];

@@ -14,6 +14,7 @@
 #include "analysis/phase_transition.hpp"
 #include "core/require.hpp"
 #include "report/line_plot.hpp"
+#include "report/report.hpp"
 #include "report/svg.hpp"
 #include "storage/readers/source.hpp"
 
@@ -83,7 +84,7 @@ std::string picture(const Demonstration& movement, const Split& found, double an
   report::LinePlot plot;
   plot.title = "Costs of both transition rules on the annotated recording of GraspDB14";
   plot.x.label = "time in the recording (s)";
-  plot.y.label = "cost, each between its least and largest";
+  plot.y.label = "cost, scaled to 0 ... 1";
   const Eigen::VectorXd x = movement.time.segment(found.curves.first, found.curves.log_likeness.size());
   const auto add = [&](const char* label, const Eigen::VectorXd& cost, double at, int color) {
     report::Series series;
@@ -99,7 +100,7 @@ std::string picture(const Demonstration& movement, const Split& found, double an
   plot.marks.push_back({"annotated: reach ends, grasp begins", annotated, "#444444", false, false});
   plot.width = 760.0;
   plot.height = 340.0;
-  return report::render(plot);
+  return report::svg_files(report::render(plot)).front().content;
 }
 
 void run(const std::filesystem::path& source, const std::filesystem::path& recording_file,
