@@ -215,6 +215,17 @@ TEST(Report, CoverageAndTheMappingAreShown) {
   }
 }
 
+TEST(Report, APostureBeyondTheLimitsSaysByHowMuchItWasClipped) {
+  ReportInput input = small();
+  input.synergies->groups.resize(1);
+  auto& basis = input.synergies->groups[0].group.basis;
+  basis.mean = rest_configuration(*input.hand);
+  basis.variance.setZero();
+  EXPECT_FALSE(contains(render_report(input), "clipped by")) << "the rest configuration is within the limits";
+  basis.mean[2] = input.hand->upper()[2] + 0.37;
+  EXPECT_TRUE(contains(render_report(input), "mean, clipped by 0.37"));
+}
+
 TEST(Report, HostileTextStaysText) {
   const std::string evil = "</style><script>alert(1)</script>\"'&\xFF";
   ReportInput input = small();
@@ -232,7 +243,6 @@ TEST(Report, HostileTextStaysText) {
   input.synergies->grouped_by = evil;
   input.synergies->cluster = evil;
   input.synergies->box_root = evil;
-  input.synergies->joint_names[0] = evil;
   input.synergies->groups[1].group.name = evil;
   input.synergies->groups[1].group.dropped_channels = {evil};
   input.grasps->items[0].id = evil;
@@ -243,7 +253,6 @@ TEST(Report, HostileTextStaysText) {
   input.grasps->object = evil;
   input.path->id = evil;
   input.path->goal_grasp = evil;
-  input.path->path.joint_names[0] = evil;
   input.path->runs[0].planner = evil;
   input.path->runs[0].result.detail = evil;
   input.path->runs[0].human_likeness[0].reference = evil;
@@ -264,6 +273,13 @@ TEST(Report, HostileTextStaysText) {
   EXPECT_FALSE(contains(page, "<script"));
   EXPECT_FALSE(contains(page, "\xFF"));
   EXPECT_TRUE(contains(page, "&lt;script&gt;alert(1)"));
+  input.hand.reset();  // names that a robot lacks cannot be drawn
+  input.robot.reset();
+  input.synergies->joint_names[0] = evil;
+  input.path->path.joint_names[0] = evil;
+  const std::string undrawn = render_report(input);
+  expect_sound(undrawn);
+  EXPECT_FALSE(contains(undrawn, "<script"));
 }
 
 TEST(Report, SizesThatDisagreeAreRefused) {
@@ -275,6 +291,8 @@ TEST(Report, SizesThatDisagreeAreRefused) {
       [](ReportInput& i) { i.grasps->items[0].grasp.q_grasp.conservativeResize(3); },
       [](ReportInput& i) { i.path->times.conservativeResize(3); },
       [](ReportInput& i) { i.path->path.joint_names.pop_back(); },
+      [](ReportInput& i) { i.path->path.joint_names[0] = "unknown"; },
+      [](ReportInput& i) { i.synergies->joint_names[0] = "unknown"; },
       [](ReportInput& i) { i.path->pregrasp = 4000; },
   };
   for (std::size_t c = 0; c < breaks.size(); ++c) {
@@ -310,15 +328,16 @@ TEST(Report, AFailedRunAndAFailedVerdictAreSeen) {
   EXPECT_TRUE(contains(page, "slips"));
 }
 
-TEST(ByName, OrdersByNameAndClips) {
+TEST(ByName, OrdersByNameAndKeepsTheValues) {
   const auto& hand = *full().hand;
   const auto& names = hand.joint_names();
   const Eigen::VectorXd base = rest_configuration(hand);
-  const Eigen::VectorXd q = by_name(hand, {names[5], "unknown", names[2]}, Eigen::Vector3d(0.3, 7.0, 100.0), base);
+  const Eigen::VectorXd q = by_name(hand, {names[5], names[2]}, Eigen::Vector2d(0.3, 100.0), base);
   EXPECT_DOUBLE_EQ(q[5], 0.3);
-  EXPECT_DOUBLE_EQ(q[2], hand.upper()[2]);
+  EXPECT_DOUBLE_EQ(q[2], 100.0) << "clipping is the caller's, who may have to say so";
   EXPECT_DOUBLE_EQ(q[7], base[7]);
   EXPECT_THROW(by_name(hand, {names[0]}, Eigen::Vector2d(0, 0), base), std::invalid_argument);
+  EXPECT_THROW(by_name(hand, {names[0], "unknown"}, Eigen::Vector2d(0, 0), base), std::invalid_argument);
 }
 
 /// The figures embedded in the program against the published table as transcribed independently.
