@@ -114,7 +114,6 @@ SynergyPart synergy_part(const Stored<SynergySet>& synergies, const Json& found)
   part.joint_names = synergies.value.joint_names;
   part.grouped_by = parameters.at("group_by");
   part.box_root = parameters.at("box_root");
-  part.cluster = found.at("groups").at(0).at("cluster");
   std::vector<SynergyGroup> groups = {synergies.value.pre_grasp};
   groups.insert(groups.end(), synergies.value.grasp.begin(), synergies.value.grasp.end());
   for (std::size_t i = 0; i < groups.size(); ++i) {
@@ -122,6 +121,7 @@ SynergyPart synergy_part(const Stored<SynergySet>& synergies, const Json& found)
     SynergyItem item;
     item.group = groups[i];
     item.samples = json.at("samples");
+    item.cluster = json.at("cluster");
     const Json& intervals = json.at("cumulative_variance_interval");
     item.cumulative_low.resize(static_cast<Eigen::Index>(intervals.size()));
     item.cumulative_high.resize(item.cumulative_low.size());

@@ -14,6 +14,7 @@
 
 #include "report/body_drawing.hpp"
 #include "report/paper_tables.hpp"
+#include "report/text.hpp"
 #include "tests/report/markup_check.hpp"
 #include "tests/report/synthetic_report.hpp"
 
@@ -215,6 +216,45 @@ TEST(Report, CoverageAndTheMappingAreShown) {
   }
 }
 
+/// Vertical places of the dashed lines in a plot, from the left.
+std::vector<double> dashed_heights(const std::string& svg) {
+  static const std::regex kDashed(R"re(<polyline points="[-0-9.]+,([-0-9.]+) [^>]*stroke-dasharray)re");
+  std::vector<double> heights;
+  for (std::sregex_iterator it(svg.begin(), svg.end(), kDashed), end; it != end; ++it)
+    heights.push_back(std::stod((*it)[1].str()));
+  return heights;
+}
+
+TEST(Report, EachGroupsCoverageStandsAtItsOwnNominalAndNamesItsCluster) {
+  ReportInput input = small();
+  input.synergies->groups[0].reduced_box->nominal = 0.99;
+  input.synergies->groups[1].reduced_box->nominal = 0.91;
+  input.synergies->groups[0].cluster = "subject";
+  const std::string page = render_report(input);
+  const std::size_t title = page.find("Coverage of the first k coordinates");
+  ASSERT_NE(title, std::string::npos);
+  const auto heights = dashed_heights(page.substr(title, page.find("</svg>", title) - title));
+  ASSERT_EQ(heights.size(), 2U) << "one line per group";
+  EXPECT_LT(heights[0] + 5.0, heights[1]) << "99 % lies above 91 %";
+  for (const char* cluster : {"subject", "recording"}) {
+    EXPECT_TRUE(contains(page, concat({"<td>", cluster, "</td>"}))) << cluster;
+  }
+}
+
+TEST(Report, AGroupOfTooFewClustersHasNoBandAndSaysSo) {
+  const std::string said = "no interval: too few clusters";
+  ReportInput input = small();
+  EXPECT_FALSE(contains(render_report(input), said));
+  auto& item = input.synergies->groups[1];
+  item.cumulative_low.resize(0);
+  item.cumulative_high.resize(0);
+  item.full_box->interval.reset();
+  const std::string page = render_report(input);
+  expect_sound(page);
+  EXPECT_TRUE(contains(page, concat({"this analysis (", said, ")"})));
+  EXPECT_TRUE(contains(page, concat({"[", said, "] of "})));
+}
+
 TEST(Report, APostureBeyondTheLimitsSaysByHowMuchItWasClipped) {
   ReportInput input = small();
   input.synergies->groups.resize(1);
@@ -241,7 +281,7 @@ TEST(Report, HostileTextStaysText) {
   input.transitions->method = evil;
   input.transitions->example->demonstration = evil;
   input.synergies->grouped_by = evil;
-  input.synergies->cluster = evil;
+  input.synergies->groups[1].cluster = evil;
   input.synergies->box_root = evil;
   input.synergies->groups[1].group.name = evil;
   input.synergies->groups[1].group.dropped_channels = {evil};
