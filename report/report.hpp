@@ -70,7 +70,7 @@ struct TransitionFractions {
 };
 
 struct TransitionPart {
-  std::string method;  ///< the rule in force: "likeness" or "changepoint"
+  std::string method;  ///< the rule in force: "likeness" or "changepoint"; empty: no split was made
   std::optional<TransitionCurves> example;
   std::vector<TransitionCurves> others;  ///< drawn after the example
   std::string chosen_by;                 ///< a sentence: by which rule these recordings were chosen

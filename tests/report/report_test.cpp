@@ -255,6 +255,15 @@ TEST(Report, AGroupOfTooFewClustersHasNoBandAndSaysSo) {
   EXPECT_TRUE(contains(page, concat({"[", said, "] of "})));
 }
 
+TEST(Report, WithoutASplitNoRuleIsInForce) {
+  ReportInput input = small();
+  EXPECT_TRUE(contains(render_report(input), "In force here: likeness."));
+  input.transitions = TransitionPart{};
+  const std::string page = render_report(input);
+  EXPECT_FALSE(contains(page, "In force here"));
+  EXPECT_TRUE(contains(page, "No split was made here"));
+}
+
 TEST(Report, APostureBeyondTheLimitsSaysByHowMuchItWasClipped) {
   ReportInput input = small();
   input.synergies->groups.resize(1);
