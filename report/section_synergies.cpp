@@ -157,7 +157,9 @@ Markup coverage_plot(const SynergyPart& part, std::optional<Coverage> SynergyIte
   std::string names;
   for (std::size_t i = 0; i < part.groups.size(); ++i) {
     const auto& coverage = part.groups[i].*box;
-    names += concat({i == 0 ? "" : ", ", std::to_string(i + 1), ": ", part.groups[i].group.name});
+    const auto& group = part.groups[i].group;
+    names += concat({i == 0 ? "" : ", ", std::to_string(i + 1), ": ",
+                     group.phase == "grasp" ? concat({part.grouped_by, " "}) : std::string(), group.name});
     if (!coverage) continue;
     const double x = static_cast<double>(i) + 1.0;
     Series nominal{inside.empty() ? "nominal" : "",

@@ -236,6 +236,7 @@ TEST(Report, EachGroupsCoverageStandsAtItsOwnNominalAndNamesItsCluster) {
   const auto heights = dashed_heights(page.substr(title, page.find("</svg>", title) - title));
   ASSERT_EQ(heights.size(), 2U) << "one line per group";
   EXPECT_LT(heights[0] + 5.0, heights[1]) << "99 % lies above 91 %";
+  EXPECT_TRUE(contains(page, "Coverage of the first k coordinates. 1: pre-grasp, 2: family 1."));
   for (const char* cluster : {"subject", "recording"}) {
     EXPECT_TRUE(contains(page, concat({"<td>", cluster, "</td>"}))) << cluster;
   }
