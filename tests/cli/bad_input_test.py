@@ -3,6 +3,7 @@
 """Bad input gives one clear line and the right exit code, and leaves the store as it was."""
 import pathlib
 import shutil
+import struct
 import tempfile
 import unittest
 
@@ -144,7 +145,8 @@ class BadInput(unittest.TestCase):
 
     def test_damaged_store(self):
         def flip(data):
-            data[len(data) // 2] ^= 4
+            table, = struct.unpack_from("<Q", data, len(data) - 26)  # docs/file_format.md: contents
+            data[table - 1] ^= 4  # the last byte of the last object
             return bytes(data)
 
         # The first file holds recordings, the last one the synergies: a command that reads them must refuse.
@@ -157,9 +159,14 @@ class BadInput(unittest.TestCase):
                     self.refuse(3, [".h5"], command[0], "--store", store, *command[1:], store=store)
 
     def test_verify_finds_damage(self):
-        store = self.damaged(lambda data: bytes(data[:100]))
-        code, out, err = run("verify", "--store", store)
-        self.assertEqual(code, 3, out + err)
+        def flip(data):  # in the HDF5 bytes: not what a command reads, but damage
+            data[len(data) // 3] ^= 4
+            return bytes(data)
+
+        for change in (flip, lambda data: bytes(data[:100])):
+            store = self.damaged(change)
+            code, out, err = run("verify", "--store", store)
+            self.assertEqual(code, 3, out + err)
 
 
 if __name__ == "__main__":

@@ -127,7 +127,7 @@ class Pipeline(unittest.TestCase):
     def test_every_run_is_recorded_the_failed_ones_too(self):
         with tempfile.TemporaryDirectory() as folder:
             store = self.copied(folder)
-            world = ("--store", store, "--scene", SCENE, "--runs", 40)
+            world = ("--store", store, "--scene", SCENE, "--runs", 50)  # shares are whole percents: no tie to round
             for limit in (100, 60, 150):  # asked once a pass: some runs end within it, some do not
                 code, out, err = run("plan", *world, "--planner", "rrtconnect", "--max-checks", limit, "--json")
                 self.assertIn(code, (0, 1), err)
@@ -146,16 +146,16 @@ class Pipeline(unittest.TestCase):
             page = store.parent / "report.html"
             must("report", "--store", store, "--out", page)
             text = page.read_text()
-            share = f"{100 * statuses.count('solved') / 40:.0f} %"
-            row = text[text.index("here, rrtconnect (40 runs"):]
+            share = f"{100 * statuses.count('solved') / 50:.0f} %"
+            row = text[text.index("here, rrtconnect (50 runs"):]
             self.assertIn(share, row[:row.index("</tr>")])
             self.assertIn("here, synergy (2 runs, step 0.4 rad, resolution 0.02 rad)", text)
             self.assertIn(limited["ids"][-1], text)  # the newest path is the one that is shown
             log = (store / "runs.jsonl").read_text().splitlines()
             seconds = [json.loads(line) for line in log if "planner_cpu_seconds" in line][-1]
             self.assertEqual(seconds["planner"], "rrtconnect")
-            self.assertEqual(len(seconds["planner_cpu_seconds"]), 40)
-            mean = sum(seconds["planner_cpu_seconds"]) / 40
+            self.assertEqual(len(seconds["planner_cpu_seconds"]), 50)
+            mean = sum(seconds["planner_cpu_seconds"]) / 50
             self.assertIn(f"rrtconnect: {mean:.3f} s of CPU per run", text)
 
     def test_an_interrupted_plan_keeps_its_finished_runs(self):

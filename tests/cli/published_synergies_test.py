@@ -35,7 +35,7 @@ def learnt(source, group_by):
         fields = must("show", identity, "--store", store)["object"]["fields"]
         groups = {}
         for number, group in enumerate(document["groups"][1:]):
-            axes = numpy.array(fields[f"grasp.{number:03d}.axes"])
+            axes = numpy.array(fields[f"grasp.{number:03d}.basis_axes"])
             groups[group["name"]] = axes, numpy.array(group["cumulative_variance"]), group
         return groups
 

@@ -47,7 +47,7 @@ class Retarget(unittest.TestCase):
         code, _, said = run("retarget", "--store", self.store, "--hand", "models/shadow_hand/shadow_right.yaml",
                             env={"DEX_URDF": "/nowhere"})
         self.assertEqual(code, 2)
-        self.assertIn("shadow_right.yaml", said)
+        self.assertIn("/nowhere/robots/hands/shadow_hand/shadow_hand_right.urdf: cannot be opened", said)
 
     @unittest.skipUnless(SHADOW.exists(), f"{SHADOW} is absent")
     def test_another_hand_from_its_own_urdf(self):

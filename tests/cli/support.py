@@ -92,12 +92,14 @@ def snapshot(store):
 def forge(store, kind, change):
     """Changes the fields of every object of a kind, and the hashes so that they fit: what a damaged file cannot be."""
     for path in sorted(store.glob("*.h5")):
-        with h5py.File(path, "r+") as file:
-            groups = [group for group in file["objects"].values() if group.attrs["kind"] == kind]
-            for group in groups:
-                change(group["fields"])
-                group.attrs["id"] = content_hash(read_object(group))
-        if groups:
+        with h5py.File(path, "r") as file:
+            numbers = [number for number, group in file["objects"].items() if group.attrs["kind"] == kind]
+        if numbers:
+            with h5py.File(path, "r+") as file:  # closing cuts off the contents behind the HDF5 bytes
+                for number in numbers:
+                    group = file["objects"][number]
+                    change(group["fields"])
+                    group.attrs["id"] = content_hash(read_object(group))
             path.rename(path.with_name(f"{path.stem.split('-')[0]}-{hashlib.sha256(path.read_bytes()).hexdigest()[:32]}.h5"))
     (store / "index.bin").unlink()
 

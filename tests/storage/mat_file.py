@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """MATLAB v5 files read and written without any library: numbers and cells (MAT-File Format, MathWorks)."""
 import itertools
+import pathlib
 import struct
 import zlib
 
@@ -54,7 +55,7 @@ def array(data):
 
 def read(file):
     """Name -> bytes of each array of that name."""
-    data = file if isinstance(file, bytes) else open(file, "rb").read()
+    data = file if isinstance(file, bytes) else pathlib.Path(file).read_bytes()
     if data[124:128] != b"\x00\x01IM":
         raise ValueError("not a MATLAB v5 file of a little-endian machine")
     found = {}
