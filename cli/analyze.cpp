@@ -122,6 +122,7 @@ Json transition_json(const analysis::TransitionReport& found, analysis::Transiti
   const bool likeness = rule == analysis::TransitionRule::likeness;
   const auto& one = likeness ? found.likeness : found.changepoint;
   return {{"demonstration", found.demonstration},
+          {"source", found.source},
           {"index", one.index},
           {"time_s", number(one.time_s)},
           {"fraction", number(one.fraction)},
