@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "cli/commands.hpp"
+#include "cli/glove_calibration.hpp"
 #include "cli/json.hpp"
 #include "cli/resources.hpp"
 #include "cli/retarget_totals.hpp"
@@ -26,59 +27,9 @@ constexpr const char* kHumanHand = "models/human_hand/human_hand.yaml";
 constexpr double kShortestHand = 0.1;  ///< m, of a wearer
 constexpr double kLongestHand = 0.3;   ///< m
 
-std::string label(const Demonstration& motion, const std::string& name) {
-  const auto found = motion.labels.find(name);
-  return found == motion.labels.end() ? std::string() : found->second;
-}
-
-/// Recordings with an unknown zero are calibrated together: those of one source and one value of the label that the
-/// source calibrates by ("range by subject"). Empty: the channels are calibrated already.
-std::string calibration_cluster(const Demonstration& motion) {
-  const std::string rule = label(motion, "calibration");
-  constexpr std::string_view prefix = "range by ";
-  if (!rule.starts_with(prefix)) return {};
-  return label(motion, "source") + "/" + label(motion, rule.substr(prefix.size()));
-}
-
-robot::ChannelCalibration identity(const std::vector<std::string>& channels) {
-  const auto n = static_cast<Eigen::Index>(channels.size());
-  return {channels, Eigen::VectorXd::Ones(n), Eigen::VectorXd::Zero(n)};
-}
-
-/// How the channels of one cluster are calibrated, and from which recordings.
-struct Calibration {
-  robot::ChannelCalibration channels;
-  std::vector<std::string> recordings;  ///< ids
-};
-using Calibrations = std::map<std::string, Calibration>;
-
-Calibrations calibrate(const std::vector<Stored<Demonstration>>& motions, const robot::RobotModel& human) {
-  std::map<std::string, std::vector<const Demonstration*>> clusters;
-  Calibrations result;
-  for (const auto& motion : motions) {
-    const auto cluster = calibration_cluster(motion.value);
-    if (cluster.empty()) continue;
-    clusters[cluster].push_back(&motion.value);
-    result[cluster].recordings.push_back(motion.id);
-  }
-  for (const auto& [cluster, members] : clusters) {
-    result.at(cluster).channels = robot::calibrate_range(members, human, {});
-  }
-  return result;
-}
-
-/// What a mapped motion is made from: its recording first, then the others that its calibration rests on.
-std::vector<std::string> inputs_of(const std::string& recording, const Calibration& calibration) {
-  std::vector<std::string> inputs = {recording};
-  for (const auto& other : calibration.recordings) {
-    if (other != recording) inputs.push_back(other);
-  }
-  return inputs;
-}
-
 /// Length of the wearer's hand, m, where the label hand_length or the option tells it.
 std::optional<double> told_length(const Demonstration& motion, const RetargetOptions& options) {
-  const std::string text = label(motion, "hand_length");
+  const std::string text = label_of(motion, "hand_length");
   if (text.empty()) return options.hand_length;
   double length = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), length);
@@ -130,11 +81,6 @@ Task make_task(const RetargetOptions& options, const std::vector<Stored<Demonstr
   return task;
 }
 
-Calibration calibration_of(const Demonstration& motion, const Task& task) {
-  const auto cluster = calibration_cluster(motion);
-  return cluster.empty() ? Calibration{identity(motion.joint_names), {}} : task.calibrations.at(cluster);
-}
-
 /// Maps every recording on the given number of threads; recordings that an interrupt left out are empty. The results do
 /// not depend on the number of threads.
 std::vector<std::optional<robot::Retargeted>> map_all(const std::vector<Stored<Demonstration>>& motions,
@@ -152,8 +98,8 @@ std::vector<std::optional<robot::Retargeted>> map_all(const std::vector<Stored<D
     for (std::size_t i = next++; i < motions.size() && !interrupt_requested; i = next++) {
       const Demonstration& motion = motions[i].value;
       const double length = told_length(motion, task.options).value_or(robot::kHumanHandLength);
-      mapped[i] = robot::retarget(motion, calibration_of(motion, task).channels, humans.at(length), task.hand,
-                                  task.mapping, task.settings);
+      mapped[i] = robot::retarget(motion, calibration_of(motion, task.calibrations).channels, humans.at(length),
+                                  task.hand, task.mapping, task.settings);
       if (tells && !interrupt_requested) {
         progress.update(static_cast<std::int64_t>(i) + 1, static_cast<std::int64_t>(motions.size()));
       }
@@ -236,7 +182,7 @@ int retarget(const RetargetOptions& options, const Console& console) {
   for (std::size_t i = 0; i < motions.size(); ++i) {
     if (!mapped[i]) continue;
     storage::Provenance origin = common;
-    origin.inputs = inputs_of(motions[i].id, calibration_of(motions[i].value, task));
+    origin.inputs = inputs_of(motions[i].id, calibration_of(motions[i].value, task.calibrations));
     if (task.settings.alignment) {
       Json parameters = Json::parse(origin.parameters);
       parameters["hand_length_m"] = told_length(motions[i].value, options).value_or(robot::kHumanHandLength);
@@ -251,10 +197,12 @@ int retarget(const RetargetOptions& options, const Console& console) {
   console.say("mapped " + std::to_string(ids.size()) + " recordings to " + task.hand.description().name +
               ", --mapping " + options.mapping);
   say_hand_lengths(motions, task, console);
+  say_still(task.calibrations, console);
   totals.say(console);
   Json result = document("retarget");
   result.update(totals.json());
-  result.update({{"mapping", options.mapping}, {"alignment", alignment_json(task)}});
+  result.update(
+      {{"mapping", options.mapping}, {"alignment", alignment_json(task)}, {"still", still_json(task.calibrations)}});
   result["ids"] = ids;
   console.document(result.dump());
   return kDone;
