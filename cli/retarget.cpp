@@ -6,7 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <thread>
+#include <future>
 
 #include "cli/commands.hpp"
 #include "cli/glove_calibration.hpp"
@@ -105,11 +105,10 @@ std::vector<std::optional<robot::Retargeted>> map_all(const std::vector<Stored<D
       }
     }
   };
-  {
-    std::vector<std::jthread> workers;
-    for (int t = 1; t < threads; ++t) workers.emplace_back(work, false);
-    work(true);
-  }
+  std::vector<std::future<void>> others;
+  for (int t = 1; t < threads; ++t) others.push_back(std::async(std::launch::async, work, false));
+  work(true);
+  for (auto& other : others) other.get();  // rethrows here
   std::vector<std::optional<robot::Retargeted>> results(motions.size());
   for (std::size_t i = 0; i < motions.size(); ++i) {
     if (!mapped[i]) continue;

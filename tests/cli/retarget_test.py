@@ -6,7 +6,7 @@ import shutil
 import tempfile
 import unittest
 
-from support import SHARED, must, run
+from support import SHARED, forge, must, run
 
 SHADOW = SHARED / "data/robots/dex-urdf/robots/hands/shadow_hand/shadow_hand_right.urdf"
 
@@ -42,6 +42,15 @@ class Retarget(unittest.TestCase):
         code, _, said = run("retarget", "--store", self.store, "--hand-length", 0.2)
         self.assertEqual(code, 2)
         self.assertIn("--hand-length", said)
+
+    def test_an_error_on_any_thread_ends_the_command_in_words(self):
+        def turn_back(fields):
+            fields["time"][...] = fields["time"][...][::-1]
+
+        forge(self.store, "demonstration", turn_back)
+        code, _, said = run("retarget", "--store", self.store, "--threads", 2)
+        self.assertGreater(code, 0, "ended by a signal")
+        self.assertIn("time does not increase", said)
 
     def test_a_hand_without_its_urdf_says_so(self):
         code, _, said = run("retarget", "--store", self.store, "--hand", "models/shadow_hand/shadow_right.yaml",
