@@ -19,6 +19,7 @@
 #include "robot/load_robot.hpp"
 #include "robot/retarget.hpp"
 #include "storage/codec.hpp"
+#include "storage/readers/source.hpp"
 
 namespace opponens::cli {
 namespace {
@@ -81,6 +82,12 @@ Task make_task(const RetargetOptions& options, const std::vector<Stored<Demonstr
   return task;
 }
 
+robot::RetargetSettings settings_of(const Demonstration& motion, const Task& task) {
+  robot::RetargetSettings settings = task.settings;
+  settings.postures = label_of(motion, "kind") == storage::kPostures;
+  return settings;
+}
+
 /// Maps every recording on the given number of threads; recordings that an interrupt left out are empty. The results do
 /// not depend on the number of threads.
 std::vector<std::optional<robot::Retargeted>> map_all(const std::vector<Stored<Demonstration>>& motions,
@@ -99,7 +106,7 @@ std::vector<std::optional<robot::Retargeted>> map_all(const std::vector<Stored<D
       const Demonstration& motion = motions[i].value;
       const double length = told_length(motion, task.options).value_or(robot::kHumanHandLength);
       mapped[i] = robot::retarget(motion, calibration_of(motion, task.calibrations).channels, humans.at(length),
-                                  task.hand, task.mapping, task.settings);
+                                  task.hand, task.mapping, settings_of(motion, task));
       if (tells && !interrupt_requested) {
         progress.update(static_cast<std::int64_t>(i) + 1, static_cast<std::int64_t>(motions.size()));
       }

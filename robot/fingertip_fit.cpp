@@ -214,12 +214,10 @@ class FingertipProblem {
   ceres::Solver::Options options_;
 };
 
-}  // namespace
-
-Result<FitResult> fit_fingertips(const RobotModel& hand, const FingertipFit& fit, const RetargetSettings& settings,
-                                 Eigen::MatrixXd& q) {
+/// All samples at once.
+Result<FitResult> fit_together(const RobotModel& hand, const FingertipFit& fit, const RetargetSettings& settings,
+                               Eigen::MatrixXd& q) {
   FitResult result;
-  if (fit.fitted.empty() || q.cols() == 0) return result;
   for (const FingertipFit& part : independent_parts(fit)) {
     FingertipProblem problem(hand, part, settings, q);
     const Result<bool> converged = problem.solve(settings.max_iterations);
@@ -227,6 +225,23 @@ Result<FitResult> fit_fingertips(const RobotModel& hand, const FingertipFit& fit
     result.converged = result.converged && *converged;
     result.shift = problem.shift();
     q(part.fitted, Eigen::all) = problem.positions();
+  }
+  return result;
+}
+
+}  // namespace
+
+Result<FitResult> fit_fingertips(const RobotModel& hand, const FingertipFit& fit, const RetargetSettings& settings,
+                                 Eigen::MatrixXd& q) {
+  if (fit.fitted.empty() || q.cols() == 0) return FitResult();
+  if (fit.time.size() > 0 || fit.shifted) return fit_together(hand, fit, settings, q);
+  FitResult result;
+  for (Eigen::Index t = 0; t < q.cols(); ++t) {
+    Eigen::MatrixXd one = q.col(t);
+    const auto fitted = fit_together(hand, sample_of(fit, t), settings, one);
+    if (!fitted) return fitted;
+    result.converged = result.converged && fitted->converged;
+    q.col(t) = one;
   }
   return result;
 }

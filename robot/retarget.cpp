@@ -150,7 +150,7 @@ Result<Retargeted> retarget(const Demonstration& recording, const ChannelCalibra
   Result<Eigen::MatrixXd> q = start_positions(recording, task, clamped);
   if (!q) return tl::make_unexpected(q.error());
 
-  fit->time = recording.time;
+  if (!settings.postures) fit->time = recording.time;
   fit->rest = (*q)(fit->fitted, Eigen::all);
   if (settings.mapping == MappingKind::paper) {
     fit->rest = (0.5 * (hand.lower() + hand.upper()))(fit->fitted).replicate(1, q->cols());

@@ -48,6 +48,8 @@ struct RetargetSettings {
   double acceleration = 0.0;  ///< cm s^2 / rad
   double rest = 0.02;         ///< cm / rad, of the deviation from the rest posture: decides what tips leave open
   int max_iterations = 50;
+  /// The samples are postures that do not follow each other: each is mapped for itself, without smoothness.
+  bool postures = false;
   std::optional<HandAlignment> alignment{};  ///< of joint and fingertip; absent: align_hands with the given human hand
 };
 
