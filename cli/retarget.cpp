@@ -90,8 +90,8 @@ robot::RetargetSettings settings_of(const Demonstration& motion, const Task& tas
 
 /// Maps every recording on the given number of threads; recordings that an interrupt left out are empty. The results do
 /// not depend on the number of threads.
-std::vector<std::optional<robot::Retargeted>> map_all(const std::vector<Stored<Demonstration>>& motions,
-                                                      const Task& task, int threads, const Console& console) {
+std::vector<std::optional<Result<robot::Retargeted>>> map_all(const std::vector<Stored<Demonstration>>& motions,
+                                                              const Task& task, int threads, const Console& console) {
   std::vector<std::optional<Result<robot::Retargeted>>> mapped(motions.size());
   std::map<double, robot::RobotModel> humans;  // by hand length
   for (const auto& motion : motions) {
@@ -116,13 +116,7 @@ std::vector<std::optional<robot::Retargeted>> map_all(const std::vector<Stored<D
   for (int t = 1; t < threads; ++t) others.push_back(std::async(std::launch::async, work, false));
   work(true);
   for (auto& other : others) other.get();  // rethrows here
-  std::vector<std::optional<robot::Retargeted>> results(motions.size());
-  for (std::size_t i = 0; i < motions.size(); ++i) {
-    if (!mapped[i]) continue;
-    if (!*mapped[i]) throw InputError(motions[i].value.id + ": " + mapped[i]->error().detail);
-    results[i] = std::move(**mapped[i]);
-  }
-  return results;
+  return mapped;
 }
 
 storage::Record motion_record(const robot::Retargeted& mapped, const storage::Provenance& origin) {
@@ -169,6 +163,45 @@ storage::Provenance origin_of(const Task& task) {
   return provenance("retarget", {}, files, parameters, 0);
 }
 
+/// What came of all recordings.
+struct Outcome {
+  std::vector<storage::Record> records{};
+  RetargetTotals totals{};
+  Json skipped = Json::array();  ///< [{id, reason}]
+};
+
+Outcome collect(const std::vector<Stored<Demonstration>>& motions,
+                const std::vector<std::optional<Result<robot::Retargeted>>>& mapped, const Task& task) {
+  Outcome outcome;
+  const storage::Provenance common = origin_of(task);
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    if (!mapped[i]) continue;
+    if (!*mapped[i]) {
+      outcome.skipped.push_back({{"id", motions[i].id}, {"reason", mapped[i]->error().detail}});
+      continue;
+    }
+    const Demonstration& motion = motions[i].value;
+    storage::Provenance origin = common;
+    origin.inputs = inputs_of(motions[i].id, calibration_of(motion, task.calibrations));
+    if (task.settings.alignment) {
+      Json parameters = Json::parse(origin.parameters);
+      parameters["hand_length_m"] = told_length(motion, task.options).value_or(robot::kHumanHandLength);
+      origin.parameters = parameters.dump();
+    }
+    outcome.records.push_back(motion_record(**mapped[i], origin));
+    outcome.totals.add(**mapped[i]);
+  }
+  return outcome;
+}
+
+/// Throws InputError when nothing could be mapped.
+void warn_skipped(const Outcome& outcome) {
+  if (outcome.skipped.empty()) return;
+  const std::string first = outcome.skipped.front().at("reason").get<std::string>();
+  if (outcome.records.empty()) throw InputError("no recording could be mapped; the first: " + first);
+  for (const Json& one : outcome.skipped) Console::warn("skipped: " + one.at("reason").get<std::string>());
+}
+
 }  // namespace
 
 int retarget(const RetargetOptions& options, const Console& console) {
@@ -180,36 +213,22 @@ int retarget(const RetargetOptions& options, const Console& console) {
     throw InputError(store.directory().string() + ": no recordings; run: opponens simulate, or ingest");
   say_superseded(console, superseded);
   const Task task = make_task(options, motions);
-  const storage::Provenance common = origin_of(task);
-  const auto mapped = map_all(motions, task, threads, console);
-
-  std::vector<storage::Record> records;
-  RetargetTotals totals;
-  for (std::size_t i = 0; i < motions.size(); ++i) {
-    if (!mapped[i]) continue;
-    storage::Provenance origin = common;
-    origin.inputs = inputs_of(motions[i].id, calibration_of(motions[i].value, task.calibrations));
-    if (task.settings.alignment) {
-      Json parameters = Json::parse(origin.parameters);
-      parameters["hand_length_m"] = told_length(motions[i].value, options).value_or(robot::kHumanHandLength);
-      origin.parameters = parameters.dump();
-    }
-    records.push_back(motion_record(*mapped[i], origin));
-    totals.add(*mapped[i]);
-  }
-  const auto ids = store.commit(records);
+  const Outcome outcome = collect(motions, map_all(motions, task, threads, console), task);
+  if (!interrupt_requested) warn_skipped(outcome);
+  const auto ids = store.commit(outcome.records);
   log.finish(ids);
   if (interrupt_requested) throw Interrupted();
   console.say("mapped " + std::to_string(ids.size()) + " recordings to " + task.hand.description().name +
               ", --mapping " + options.mapping);
   say_hand_lengths(motions, task, console);
   say_still(task.calibrations, console);
-  totals.say(console);
+  outcome.totals.say(console);
   Json result = document("retarget");
-  result.update(totals.json());
+  result.update(outcome.totals.json());
   result.update(
       {{"mapping", options.mapping}, {"alignment", alignment_json(task)}, {"still", still_json(task.calibrations)}});
   result["ids"] = ids;
+  result["skipped"] = outcome.skipped;
   console.document(result.dump());
   return kDone;
 }

@@ -27,8 +27,7 @@ struct JointMapping {
 /// How a human hand drives a robot hand (hand.yaml, key "mapping"). Which part a mapping uses: MappingKind.
 struct HandMapping {
   std::vector<JointMapping> copied;  ///< joint to joint in every mapping; recordings must have the channel
-  /// Joint to joint where the joint is not found from fingertips. A recording may lack the channel (gloves without an
-  /// abduction sensor of the middle finger do), which is then where the human hand has it at rest: nearest to zero.
+  /// Joint to joint where the joint is not found from fingertips.
   std::vector<JointMapping> direct;
   std::vector<std::string> fitted;                ///< robot joints that MappingKind::paper finds from fingertips
   std::map<std::string, std::string> fingertips;  ///< robot tip name -> human tip name

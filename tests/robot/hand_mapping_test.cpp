@@ -245,6 +245,9 @@ TEST(Retarget, SaysWhatIsMissing) {
   Demonstration renamed = recording;
   renamed.joint_names[static_cast<std::size_t>(column(recording, "R_PIP"))] = "other";
   EXPECT_NE(code(renamed, hands.mapping).find("no channel 'R_PIP'"), std::string::npos);
+  HandMapping without = hands.mapping;  // nothing copied: the tips still need their channels
+  without.copied.clear();
+  EXPECT_NE(code(renamed, without).find("no channel 'R_PIP'"), std::string::npos);
   Demonstration broken = recording;
   broken.q_h(2, 2) = std::nan("");
   EXPECT_NE(code(broken, hands.mapping).find("not finite"), std::string::npos);
@@ -257,6 +260,27 @@ TEST(Retarget, SaysWhatIsMissing) {
   Demonstration ragged = recording;
   ragged.time.conservativeResize(3);
   EXPECT_THROW(code(ragged, hands.mapping), std::invalid_argument);
+}
+
+TEST(Retarget, ChannelsThatAreAssumedAreNamed) {
+  const Hands hands;
+  const Demonstration recording = swing(hands.human, 0.2, 0.8, 5);
+  const auto lacking = [&](const char* channel, MappingKind kind) {
+    Demonstration input = recording;
+    input.joint_names[static_cast<std::size_t>(column(recording, channel))] = "other";
+    RetargetSettings settings = default_settings(kind);
+    settings.alignment = HandAlignment{};
+    return retarget(input, {}, hands.human, hands.hand, hands.mapping, settings);
+  };
+  for (const MappingKind kind : {MappingKind::joint, MappingKind::fingertip, MappingKind::paper}) {
+    for (const char* channel : {"T_ROT", "I_ABD", "T_ABD"}) {
+      const auto result = lacking(channel, kind);
+      ASSERT_FALSE(result) << channel << " would be constant";
+      EXPECT_EQ(result.error().code, FailureCode::not_found);
+    }
+    EXPECT_EQ(lacking("M_ABD", kind).value().assumed, std::vector<std::string>{"M_ABD"});
+    EXPECT_TRUE(lacking("L_ABD", kind).value().assumed.empty()) << "the Allegro has no little finger";
+  }
 }
 
 }  // namespace
