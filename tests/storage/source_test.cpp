@@ -129,6 +129,20 @@ TEST(Source, ResamplesLinearlyAndTrims) {
   EXPECT_TRUE(contains(files.refusal(), {"a.csv", "after resampling and trimming", "'0'", "trim.speed"}));
 }
 
+TEST(Source, AConstantChannelStaysConstantWhenResampled) {
+  std::string text = "t,index_base,I_PIP,pressure\n";
+  for (int i = 0; i <= 40; ++i) text += std::to_string(0.032 * i) + "," + std::to_string(i) + ",0.1,0\n";
+  const Files files("data/csv/a.csv", text);
+  spill(files.directory / "source.yaml", replaced(kYaml, "unit: deg", "unit: rad\nresample: {rate: 70}"));
+  const Recording recording = files.read()[0];
+  EXPECT_EQ(recording.demonstration.q_h.col(1).minCoeff(), 0.1);
+  EXPECT_EQ(recording.demonstration.q_h.col(1).maxCoeff(), 0.1);
+  Summary summary;
+  add(summary, recording);
+  EXPECT_EQ(summary.channels[0].stuck_recordings, 0);
+  EXPECT_EQ(summary.channels[1].stuck_recordings, 1);
+}
+
 TEST(Source, TooManySamplesAreRefusedBeforeTheyAreMade) {
   const std::string yaml = replaced(kYaml, "unit: deg", "unit: rad\nresample: {rate: 10}");
   const auto refusal = [&](const std::string& last) {
