@@ -154,8 +154,14 @@ void append_bytes(const std::filesystem::path& path, std::string_view bytes) {
 }
 
 void append_line(const std::filesystem::path& path, std::string_view text) {
-  Descriptor file(path, O_WRONLY | O_CREAT | O_APPEND, "cannot open");
-  write_all(file, std::as_bytes(std::span(text)), path);
+  Descriptor file(path, O_RDWR | O_CREAT | O_APPEND, "cannot open");
+  struct stat status {};
+  if (::fstat(file.value(), &status) != 0) throw_errno("cannot append", path);
+  char last = '\n';
+  if (status.st_size > 0 && ::pread(file.value(), &last, 1, status.st_size - 1) < 0) throw_errno("cannot read", path);
+  std::string line(last == '\n' ? 0 : 1, '\n');
+  line += text;
+  write_all(file, std::as_bytes(std::span(line)), path);
   file.close();
 }
 

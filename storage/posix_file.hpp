@@ -64,7 +64,8 @@ void sync_directory(const std::filesystem::path& directory);
 /// Appends bytes to a file that is there; cuts it back and throws when they do not fit.
 void append_bytes(const std::filesystem::path& path, std::string_view bytes);
 
-/// Appends text with one write(2) in append mode, so that lines of concurrent writers do not mix.
+/// Appends text with one write(2) in append mode, so that lines of concurrent writers do not mix. A last
+/// line that was cut off is ended first, so that it does not swallow this one.
 void append_line(const std::filesystem::path& path, std::string_view text);
 
 /// Names of the directory's entries, sorted by their bytes.

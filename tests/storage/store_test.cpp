@@ -100,6 +100,18 @@ TEST(Store, WhatIsMadeAgainIsTheNewestAgain) {
   EXPECT_EQ(names_as_produced(store), (Names{"1", "2", "3", "4", "5"}));
 }
 
+TEST(Store, ALogLineThatIsCutOffDoesNotSwallowTheNext) {
+  const TemporaryDirectory directory;
+  Store store(directory / "store", true);
+  store.commit({small_record(1), small_record(2), small_record(3)});
+  store.commit({small_record(1)});
+  const fs::path log = directory / "store" / "runs.jsonl";
+  fs::resize_file(log, fs::file_size(log) / 2);
+  EXPECT_EQ(names_as_produced(store), (std::vector<std::string>{"1", "2", "3"}));
+  store.commit({small_record(2)});
+  EXPECT_EQ(names_as_produced(store), (std::vector<std::string>{"1", "3", "2"}));
+}
+
 TEST(Store, ALogThatSaysOtherThingsIsNoHindrance) {
   const TemporaryDirectory directory;
   Store store(directory / "store", true);
