@@ -51,7 +51,7 @@ class Retarget(unittest.TestCase):
         source = self.folder / "source.yaml"
         text = (SOURCE / "models/sources/west_r2g.yaml").read_text()
         source.write_text("\n".join(line for line in text.splitlines() if "column: I_PIP" not in line) + "\n")
-        must("ingest", "--store", self.store, "--source", source, lacking)
+        must("ingest", lacking, "--source", source, "--store", self.store)
         code, out, said = run("retarget", "--store", self.store, "--json")
         self.assertEqual(code, 0, said)
         found = json.loads(out)
@@ -60,7 +60,7 @@ class Retarget(unittest.TestCase):
         self.assertIn("no channel 'I_PIP'", found["skipped"][0]["reason"])
         self.assertIn("skipped", said)
         alone = self.folder / "alone"
-        must("ingest", "--store", alone, "--source", source, lacking)
+        must("ingest", lacking, "--source", source, "--store", alone)
         code, _, said = run("retarget", "--store", alone)
         self.assertEqual(code, 2)
         self.assertIn("no recording could be mapped", said)
