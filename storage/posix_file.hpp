@@ -97,7 +97,7 @@ class Draft {
   Draft(const Draft&) = delete;
   Draft& operator=(const Draft&) = delete;
   const std::filesystem::path& path() const { return path_; }
-  void complete() const { rename_file(path_, final_); }
+  void complete() const;  ///< durable when what was written is
 
  private:
   std::filesystem::path final_;

@@ -14,53 +14,14 @@
 #include "storage/posix_file.hpp"
 #include "storage/production_order.hpp"
 
+#include "storage/store_files.hpp"
 namespace opponens::storage {
 namespace {
 
 namespace fs = std::filesystem;
 
 constexpr std::size_t kBatchBytes = 16U << 20U;  // payload of one file; two of them are in memory while it is made
-constexpr const char* kTemporaryPrefix = ".tmp-";
 constexpr const char* kRunLog = "runs.jsonl";
-
-/// Batch files in order of commit: by number, then by name (two writers without a lock may take the same number).
-std::vector<std::string> batch_files(const std::vector<std::string>& names) {
-  std::vector<std::string> files;
-  for (const auto& name : names) {
-    if (batch_number(name) >= 0) files.push_back(name);
-  }
-  std::stable_sort(files.begin(), files.end(),
-                   [](const auto& a, const auto& b) { return batch_number(a) < batch_number(b); });
-  return files;
-}
-
-std::vector<std::string> batch_files(const fs::path& directory) { return batch_files(directory_entries(directory)); }
-
-void create_store(const fs::path& directory) {
-  std::error_code error;
-  fs::create_directories(directory, error);
-  if (error) throw InputError(directory.string() + ": cannot make the store: " + error.message());
-  if (::access(directory.c_str(), W_OK | X_OK) != 0) throw_errno("cannot write in the store", directory);
-}
-
-/// Returns its batch files.
-std::vector<std::string> require_store(const fs::path& directory) {
-  std::error_code error;
-  const fs::file_status status = fs::status(directory, error);
-  if (!fs::exists(status)) throw InputError(directory.string() + ": no such store: " + error.message());
-  if (!fs::is_directory(status)) throw InputError(directory.string() + ": not a directory, so not a store");
-  std::vector<std::string> files = batch_files(directory);
-  if (fs::exists(directory / kIndexName) || !files.empty()) return files;
-  throw InputError(directory.string() + ": not a store: it holds neither " + kIndexName + " nor any batch file");
-}
-
-/// What a writer left that died between creating and renaming. Only to be called under the lock.
-void remove_leftovers(const fs::path& directory, const std::vector<std::string>& names) {
-  for (const auto& name : names) {
-    std::error_code ignored;
-    if (name.starts_with(kTemporaryPrefix)) fs::remove(directory / name, ignored);
-  }
-}
 
 /// Consecutive runs of fresh records, each of at most kBatchBytes of payload (or one record).
 std::vector<std::vector<std::size_t>> split(const std::vector<Record>& records, const std::vector<std::size_t>& fresh) {
