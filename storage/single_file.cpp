@@ -22,11 +22,15 @@ class Copier {
   explicit Copier(Store& target) : target_(target) {
     for (const auto& entry : target.list()) present_.insert(entry.id);
   }
-  bool wants(const std::string& id) const { return !present_.contains(id); }
+  /// Throws StorageError when the target holds it, but damaged.
+  bool wants(const std::string& id) const {
+    if (present_.contains(id)) target_.require_intact(id);
+    return !present_.contains(id) && !added_.contains(id);
+  }
   void add(Record record, const std::string& id) {
     bytes_ += payload_bytes(record);
     records_.push_back(std::move(record));
-    present_.insert(id);
+    added_.insert(id);
     if (bytes_ >= kCommitBytes) commit();
   }
   void commit() {
@@ -37,7 +41,8 @@ class Copier {
 
  private:
   Store& target_;
-  std::unordered_set<std::string> present_;
+  std::unordered_set<std::string> present_;  // from the start
+  std::unordered_set<std::string> added_;
   std::vector<Record> records_;
   std::size_t bytes_ = 0;
 };

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <exception>
 #include <unordered_set>
 #include <utility>
 
@@ -69,6 +70,7 @@ struct Store::State {
   void write_batches(const fs::path& directory, std::size_t number, const std::vector<Record>& records,
                      const std::vector<std::string>& ids, const std::vector<std::size_t>& fresh);
   Catalog::Place find(const fs::path& directory, const std::string& id) const;
+  Record read(const fs::path& directory, Catalog::Place place) const;
 };
 
 Store::Store(fs::path directory, bool create) : directory_(std::move(directory)), state_(std::make_unique<State>()) {
@@ -133,7 +135,11 @@ std::vector<std::string> Store::commit(const std::vector<Record>& records) {
   std::vector<std::size_t> fresh;
   std::unordered_set<std::string> seen;
   for (std::size_t i = 0; i < records.size(); ++i) {
-    if (!state_->catalog.contains(ids[i]) && seen.insert(ids[i]).second) fresh.push_back(i);
+    if (state_->catalog.contains(ids[i])) {
+      require_intact(ids[i]);
+    } else if (seen.insert(ids[i]).second) {
+      fresh.push_back(i);
+    }
   }
   if (seen.size() < std::unordered_set<std::string>(ids.begin(), ids.end()).size()) {
     // Before the files: should writing them fail, the line names what is not there and says nothing.
@@ -191,16 +197,35 @@ Catalog::Place Store::State::find(const fs::path& directory, const std::string& 
                    " and " + catalog.entry(found[1]).id);
 }
 
+Record Store::State::read(const fs::path& directory, Catalog::Place place) const {
+  const IndexEntry entry = catalog.entry(place);
+  if (last == nullptr || last->file_name() != entry.file) {
+    last.reset();  // before the next one is opened: a file of another maker is kept in memory
+    last = std::make_unique<BatchReader>(directory / entry.file);
+  }
+  return last->read(place.position, entry.id);
+}
+
 IndexEntry Store::find(const std::string& id) const { return state_->catalog.entry(state_->find(directory_, id)); }
 
 Record Store::read(const std::string& id) const {
-  const Catalog::Place place = state_->find(directory_, id);
-  const IndexEntry entry = state_->catalog.entry(place);
-  if (state_->last == nullptr || state_->last->file_name() != entry.file) {
-    state_->last.reset();  // before the next one is opened: a file of another maker is kept in memory
-    state_->last = std::make_unique<BatchReader>(directory_ / entry.file);
+  std::exception_ptr first;  // what is wrong with the earliest copy
+  for (const Catalog::Place place : state_->catalog.copies(state_->find(directory_, id))) {
+    try {
+      return state_->read(directory_, place);
+    } catch (const std::runtime_error&) {
+      if (!first) first = std::current_exception();
+    }
   }
-  return state_->last->read(place.position, entry.id);
+  std::rethrow_exception(first);
+}
+
+void Store::require_intact(const std::string& id) const {
+  try {
+    read(id);
+  } catch (const StorageError& error) {
+    throw StorageError(std::string(error.what()) + "; run opponens repair first");
+  }
 }
 
 std::vector<IndexEntry> Store::list(const std::string& kind) const {
