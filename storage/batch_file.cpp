@@ -172,7 +172,8 @@ long batch_number(const std::string& file_name) {
   if (digits.find_first_not_of("0123456789abcdef") != std::string::npos) return -1;
   long number = -1;
   const auto [end, error] = std::from_chars(file_name.data(), file_name.data() + dash, number);
-  return error == std::errc{} && end == file_name.data() + dash && number >= 0 ? number : -1;
+  constexpr long kLimit = 1L << 62U;  // the next number always exists
+  return error == std::errc{} && end == file_name.data() + dash && number >= 0 && number < kLimit ? number : -1;
 }
 
 }  // namespace opponens::storage

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "storage/single_file.hpp"
 
+#include <optional>
+#include <stdexcept>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
@@ -48,6 +50,15 @@ class Copier {
 };
 
 }  // namespace
+/// What this program would not have written; the file may come from anybody.
+void require_storable(const Record& record, const std::filesystem::path& file, const std::string& id) {
+  try {
+    check_storable(record);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(file.string() + ": object " + id + ": " + error.what());
+  }
+}
+
 
 Closure closure_of(const Store& store, const std::vector<std::string>& ids) {
   std::vector<IndexEntry> all = store.list_as_produced();
@@ -112,6 +123,7 @@ std::vector<std::string> import_single_file(const std::filesystem::path& file, S
     if (copier.wants(ids.back())) copier.add(std::move(record), ids.back());
   }
   copier.commit();
+    require_storable(record, file, ids.back());
   return ids;
 }
 
