@@ -119,7 +119,7 @@ BatchFileWriter::BatchFileWriter(std::filesystem::path path) : path_(std::move(p
   const auto lock = hdf5::lock_library();
   hdf5::Handle file = hdf5::create_on_disk(path_.string());
   hdf5::Handle objects = begin_batch(file);
-  parts_.reset(new Parts{std::move(file), std::move(objects)});
+  parts_ = std::make_unique<Parts>(Parts{std::move(file), std::move(objects)});
 }
 
 BatchFileWriter::~BatchFileWriter() {
@@ -137,6 +137,8 @@ void BatchFileWriter::finish() {
   {
     const auto lock = hdf5::lock_library();
     hdf5::flush(parts_->file);
+    parts_->objects.finish();
+    parts_->file.finish();
     parts_.reset();
   }
   const auto state = file_state(path_);

@@ -11,6 +11,7 @@
 #include "core/require.hpp"
 #include "storage/batch_file.hpp"
 #include "storage/contents.hpp"
+#include "storage/hdf5_wrappers.hpp"
 #include "storage/posix_file.hpp"
 
 namespace opponens::storage {
@@ -49,7 +50,6 @@ class Copier {
   std::size_t bytes_ = 0;
 };
 
-}  // namespace
 /// What this program would not have written; the file may come from anybody.
 void require_storable(const Record& record, const std::filesystem::path& file, const std::string& id) {
   try {
@@ -59,6 +59,7 @@ void require_storable(const Record& record, const std::filesystem::path& file, c
   }
 }
 
+}  // namespace
 
 Closure closure_of(const Store& store, const std::vector<std::string>& ids) {
   std::vector<IndexEntry> all = store.list_as_produced();
@@ -92,12 +93,14 @@ Closure closure_of(const Store& store, const std::vector<std::string>& ids) {
 void export_single_file(const Store& store, const std::vector<IndexEntry>& objects, const std::filesystem::path& out,
                         const Step& step) {
   const Draft draft(out);
-  BatchFileWriter writer(draft.path());
+  std::optional<BatchFileWriter> writer;
+  hdf5::write_to(out, [&] { writer.emplace(draft.path()); });
   for (std::size_t i = 0; i < objects.size(); ++i) {
     step(i, objects.size());
-    writer.add(store.read(objects[i].id), objects[i].id);
+    const Record record = store.read(objects[i].id);
+    hdf5::write_to(out, [&] { writer->add(record, objects[i].id); });
   }
-  writer.finish();
+  hdf5::write_to(out, [&] { writer->finish(); });
   draft.complete();
 }
 
@@ -120,10 +123,10 @@ std::vector<std::string> import_single_file(const std::filesystem::path& file, S
     step(i, contents->size());
     ids.push_back(contents->head(i).id);
     Record record = contents->read(i, ids.back());
+    require_storable(record, file, ids.back());
     if (copier.wants(ids.back())) copier.add(std::move(record), ids.back());
   }
   copier.commit();
-    require_storable(record, file, ids.back());
   return ids;
 }
 

@@ -4,13 +4,16 @@
 import csv
 import json
 import pathlib
+import resource
+import signal
+import subprocess
 import tempfile
 import unittest
 
 import h5py
 import numpy
 
-from support import HEADER, content_hash, data_set, must, read_object, run, snapshot
+from support import HEADER, PROGRAM, content_hash, data_set, must, read_object, run, snapshot
 
 SOURCE_YAML = "models/sources/west_r2g.yaml"
 
@@ -145,6 +148,22 @@ class StoreCommands(unittest.TestCase):
                 self.assertEqual((demo["dones"][-1], numpy.sum(demo["dones"])), (1, 1))
         code, _, err = run("export", self.synergies, "--store", self.store, "--format", "robomimic", "--out", out)
         self.assertEqual((code, "synergy_set" in err), (2, True))
+
+    def test_export_to_a_full_disk(self):
+        def limit():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))
+
+        for name, options in (("full.h5", ["--single-file"]), ("full.hdf5", ["--kind", "demonstration", "--format",
+                                                                             "robomimic", "--out"])):
+            folder = self.folder / ("disk_" + name)
+            folder.mkdir()
+            done = subprocess.run([PROGRAM, "export", "--store", self.store, *options, folder / name], preexec_fn=limit,
+                                  capture_output=True, text=True)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
+            self.assertIn("cannot write", done.stderr)
+            self.assertEqual(list(folder.iterdir()), [])
 
     def test_export_wrong_use(self):
         for arguments in ([], ["--format", "json"], ["--single-file", "a", "--format", "json"],
