@@ -86,7 +86,8 @@ class DirectoryLock {
   bool held_ = false;
 };
 
-/// A file that is written under another name until it is complete; removed when it never is.
+/// A file that is written under another name until it is complete; removed when it never is. What a killed process of
+/// the same number left there goes first.
 class Draft {
  public:
   explicit Draft(std::filesystem::path final_path);

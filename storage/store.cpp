@@ -14,8 +14,8 @@
 #include "storage/catalog.hpp"
 #include "storage/posix_file.hpp"
 #include "storage/production_order.hpp"
-
 #include "storage/store_files.hpp"
+
 namespace opponens::storage {
 namespace {
 
@@ -97,7 +97,7 @@ void Store::State::refresh(const fs::path& directory, const std::vector<std::str
       catalog.append(file, BatchReader(directory / file).entries());
     } catch (const NewerSchemaError&) {
       throw;
-    } catch (const StorageError& error) {
+    } catch (const std::runtime_error& error) {  // damaged, or the system does not let us read it
       unreadable.emplace_back(error.what());
     }
   }
@@ -251,7 +251,7 @@ std::vector<std::string> Store::check() const {
     }
     try {
       for (auto& sentence : BatchReader(path).check()) sentences.push_back(std::move(sentence));
-    } catch (const StorageError& error) {
+    } catch (const std::runtime_error& error) {
       sentences.emplace_back(error.what());
     }
   }
