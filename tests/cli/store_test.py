@@ -168,7 +168,8 @@ class StoreCommands(unittest.TestCase):
     def test_export_wrong_use(self):
         for arguments in ([], ["--format", "json"], ["--single-file", "a", "--format", "json"],
                           ["--single-file", "a", "--out", "b"], ["--format", "json", "--out", "x", "--kind", "none"],
-                          ["feed", "--single-file", "a"], ["--single-file", "/nowhere/a.h5"]):
+                          ["feed", "--single-file", "a"], [self.synergies, "--kind", "demonstration", "--single-file", "a"],
+                          [self.synergies, "--kind", "demonstration", "--format", "json", "--out", "x"], ["--single-file", "/nowhere/a.h5"]):
             code, _, err = run("export", "--store", self.store, *arguments)
             self.assertEqual(code, 2, arguments)
             self.assertEqual(len(err.strip().splitlines()), 1, err)
