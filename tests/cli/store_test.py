@@ -252,6 +252,11 @@ class StoreCommands(unittest.TestCase):
             self.assertEqual(set(named), {victim, self.synergies})
             self.assertEqual(named[victim]["file"], "r1.csv")
             self.assertEqual(named[self.synergies]["input"], victim)
+            other = self.folder / "as_it_was"
+            other.mkdir()
+            (other / "r1.csv").write_text(original)
+            document = must("stale", "--store", store, "--files", self.data, other)
+            self.assertEqual((document["stale"], document["files_ambiguous"]), ([], ["r1.csv"]))
             must("ingest", self.data, "--store", store, "--source", SOURCE_YAML)
             document = must("stale", "--store", store)
             self.assertIn(victim, [item["id"] for item in document["superseded"]])
