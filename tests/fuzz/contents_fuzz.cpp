@@ -19,17 +19,22 @@ namespace {
 constexpr std::size_t kTrailer = 16 + 18;  // count, place of the table, marker
 
 /// Whatever is believed has the id under which it is read.
+void read_object(const ContentsReader& contents, std::size_t position) {
+  try {
+    const std::string id = contents.head(position).id;
+    if (content_hash(contents.read(position, id)) != id) std::abort();
+  } catch (const StorageError&) {
+    return;
+  }
+}
+
 void read_all(const std::filesystem::path& path) {
   const ReadOnlyFile file(path);
-  if (const auto contents = ContentsReader::open(file)) {
-    for (std::size_t i = 0; i < contents->size(); ++i) {
-      try {
-        const std::string id = contents->head(i).id;
-        if (content_hash(contents->read(i, id)) != id) std::abort();
-      } catch (const StorageError&) {
-        continue;
-      }
-    }
+  try {
+    const auto contents = ContentsReader::open(file);
+    for (std::size_t i = 0; contents && i < contents->size(); ++i) read_object(*contents, i);
+  } catch (const StorageError&) {
+    // of another schema
   }
   salvage(file);
 }
