@@ -9,7 +9,7 @@ import tempfile
 import time
 import unittest
 
-from support import data_set, must, rows, run, start, HEADER
+from support import HEADER, data_set, must, rows, run, start
 
 SOURCE_YAML = "models/sources/west_r2g.yaml"
 RECORDINGS = 1100  # five batches
@@ -39,7 +39,7 @@ class KilledIngest(unittest.TestCase):
                 with start(*arguments, store) as program:
                     time.sleep(chance.uniform(0.0, lasts))
                     program.kill()
-                    out = program.stdout.read()
+                    out, _ = program.communicate()
                 killed += program.returncode == -9
                 said = acknowledged(out)
                 some += 0 < said < RECORDINGS
