@@ -29,7 +29,13 @@ std::vector<storage::IndexEntry> chosen(const storage::Store& store, const Expor
                      (options.kind.empty() ? "" : " of kind '" + options.kind + "'"));
   }
   std::unordered_set<std::string> wanted;
-  for (const auto& id : options.ids) wanted.insert(store.find(id).id);
+  for (const auto& id : options.ids) {
+    const storage::IndexEntry entry = store.find(id);
+    if (!options.kind.empty() && entry.kind != options.kind) {
+      throw InputError("'" + id + "' is a " + entry.kind + ", not a " + options.kind + " (--kind)");
+    }
+    wanted.insert(entry.id);
+  }
   std::erase_if(entries, [&](const auto& entry) { return !wanted.contains(entry.id); });
   return entries;
 }

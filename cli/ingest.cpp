@@ -131,8 +131,10 @@ class BatchWriter {
     open();
     const auto ids = store_->commit(records_);
     ids_.insert(ids_.end(), ids.begin(), ids.end());
-    console_.say("committed " + std::to_string(ids.size()) + " recordings (" + std::to_string(ids_.size()) +
-                 " so far)");
+    const std::string line =
+        "committed " + std::to_string(ids.size()) + " recordings (" + std::to_string(ids_.size()) + " so far)";
+    console_.say(line);
+    if (console_.json()) console_.advise(line);  // stdout is for the document
     std::fflush(stdout);
     records_.clear();
     bytes_ = 0;

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "storage/repair.hpp"
 
+#include <algorithm>
+#include <functional>
+
 #include "cli/commands.hpp"
 #include "cli/json.hpp"
 #include "cli/records.hpp"
@@ -25,6 +28,7 @@ void say_file(const storage::DamagedFile& file, bool dry_run, const Console& con
   for (const auto& entry : file.saved) {
     console.say("  intact  " + short_id(entry.id) + "  " + entry.kind + "  " + entry.name);
   }
+  if (file.unreadable) return console.say("  cannot be read, so it was left as it is");
   if (!file.index_knew_it) console.say("  the index does not know this file; it may have held more");
   if (!dry_run) {
     console.say(file.saved.empty() ? "  nothing in it is intact" : "  what is intact was written to a new file");
@@ -43,7 +47,8 @@ int repair(const RepairOptions& options, const Console& console) {
                      {"reason", file.reason},
                      {"intact", entries_json(file.saved)},
                      {"lost", entries_json(file.lost)},
-                     {"index_knew_it", file.index_knew_it}});
+                     {"index_knew_it", file.index_knew_it},
+                     {"unreadable", file.unreadable}});
   }
   Json dangling = Json::array();
   for (const auto& [object, input] : report.dangling) {
@@ -57,7 +62,7 @@ int repair(const RepairOptions& options, const Console& console) {
     console.say("nothing is damaged");
   } else if (!options.dry_run) {
     console.say("damaged files are in " + (options.common.store / storage::kDamagedFolder).string() +
-                "; nothing was deleted");
+                ", as far as they can be read; nothing was deleted");
     const storage::Store store(options.common.store, false);
     RunLog(store, "repair", 1).finish({});
   }
@@ -66,7 +71,9 @@ int repair(const RepairOptions& options, const Console& console) {
   result["files"] = std::move(files);
   result["missing_upstream"] = std::move(dangling);
   console.document(result.dump());
-  return options.dry_run && !report.files.empty() ? kStoreDamaged : kDone;
+  const bool unreadable =
+      std::any_of(report.files.begin(), report.files.end(), std::mem_fn(&storage::DamagedFile::unreadable));
+  return unreadable || (options.dry_run && !report.files.empty()) ? kStoreDamaged : kDone;
 }
 
 }  // namespace opponens::cli

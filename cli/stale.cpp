@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The opponens authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <iterator>
 #include <optional>
 #include <unordered_map>
 
@@ -28,13 +30,15 @@ class OutsideFiles {
     }
   }
 
-  /// Whether a file is there and none of that name has the hash any more; nullopt: there is none to be found.
-  std::optional<bool> changed(const std::string& name, const std::string& hash) {
+  /// ambiguous: some of the files of that name have the hash, some have not.
+  enum class Finding { not_there, unchanged, changed, ambiguous };
+  Finding compare(const std::string& name, const std::string& hash) {
     const std::vector<fs::path> places = places_of(name);
-    for (const auto& place : places) {
-      if (hash_of(place) == hash) return false;
-    }
-    return places.empty() ? std::nullopt : std::optional(true);
+    const auto same =
+        std::count_if(places.begin(), places.end(), [&](const fs::path& place) { return hash_of(place) == hash; });
+    if (places.empty()) return Finding::not_there;
+    if (same == 0) return Finding::changed;
+    return same == std::ssize(places) ? Finding::unchanged : Finding::ambiguous;
   }
 
  private:
@@ -59,9 +63,10 @@ class OutsideFiles {
   std::unordered_map<std::string, std::string> hashes_;
 };
 
-/// What makes a later object take an earlier one's place: a motion's kind, source and name; of synergies, being some.
+/// What makes a later object take an earlier one's place: a motion's kind, source and name; of synergies, being some
+/// (of that order: those of joint velocities do not take the place of the others).
 std::optional<std::string> role_of(const storage::Record& record) {
-  if (record.kind == kSynergySet) return std::string(kSynergySet);
+  if (record.kind == kSynergySet || record.kind == kFirstOrderSynergies) return record.kind;
   if (record.kind != kRecording && record.kind != kHandMotion) return std::nullopt;
   return Json{record.kind, text_field(record, "label.source"), record.name}.dump();
 }
@@ -88,14 +93,16 @@ class Staleness {
   const std::vector<Finding>& findings() const { return findings_; }
   const std::vector<Finding>& superseded() const { return superseded_; }
   std::size_t unseen_files() const { return unseen_.size(); }
+  const std::set<std::string>& ambiguous_files() const { return ambiguous_; }
 
  private:
   void look_at(const std::string& id, const storage::Record& record) {
     if (const auto role = role_of(record)) roles_[id] = *role;
     for (const auto& [name, hash] : record.provenance.files) {
-      const std::optional<bool> changed = outside_.changed(name, hash);
-      if (!changed) unseen_.insert(name);
-      if (changed.value_or(false)) changed_file_.emplace(id, name);
+      const OutsideFiles::Finding found = outside_.compare(name, hash);
+      if (found == OutsideFiles::Finding::not_there) unseen_.insert(name);
+      if (found == OutsideFiles::Finding::ambiguous) ambiguous_.insert(name);
+      if (found == OutsideFiles::Finding::changed) changed_file_.emplace(id, name);
     }
   }
 
@@ -154,6 +161,7 @@ class Staleness {
   std::unordered_map<std::string, std::string> changed_file_;  // id -> outside file
   std::unordered_map<std::string, bool> stale_;
   std::set<std::string> unseen_;
+  std::set<std::string> ambiguous_;
   std::vector<Finding> findings_;
   std::vector<Finding> superseded_;
 };
@@ -180,6 +188,11 @@ int stale(const StaleOptions& options, const Console& console) {
   result["superseded"] = say_findings(staleness.superseded(), console);
   result["stale"] = say_findings(staleness.findings(), console);
   result["files_not_found"] = staleness.unseen_files();
+  result["files_ambiguous"] = staleness.ambiguous_files();
+  for (const auto& name : staleness.ambiguous_files()) {
+    console.say(name +
+                ": several files have this name, and only some are as they were; name their folder with --files");
+  }
   console.say(std::to_string(staleness.findings().size()) + " objects are stale, " +
               std::to_string(staleness.superseded().size()) + " superseded; " +
               std::to_string(staleness.unseen_files()) + " outside files were not found, so not compared");

@@ -119,7 +119,7 @@ BatchFileWriter::BatchFileWriter(std::filesystem::path path) : path_(std::move(p
   const auto lock = hdf5::lock_library();
   hdf5::Handle file = hdf5::create_on_disk(path_.string());
   hdf5::Handle objects = begin_batch(file);
-  parts_.reset(new Parts{std::move(file), std::move(objects)});
+  parts_ = std::make_unique<Parts>(Parts{std::move(file), std::move(objects)});
 }
 
 BatchFileWriter::~BatchFileWriter() {
@@ -137,6 +137,8 @@ void BatchFileWriter::finish() {
   {
     const auto lock = hdf5::lock_library();
     hdf5::flush(parts_->file);
+    parts_->objects.finish();
+    parts_->file.finish();
     parts_.reset();
   }
   const auto state = file_state(path_);
@@ -172,7 +174,8 @@ long batch_number(const std::string& file_name) {
   if (digits.find_first_not_of("0123456789abcdef") != std::string::npos) return -1;
   long number = -1;
   const auto [end, error] = std::from_chars(file_name.data(), file_name.data() + dash, number);
-  return error == std::errc{} && end == file_name.data() + dash && number >= 0 ? number : -1;
+  constexpr long kLimit = 1L << 62U;  // the next number always exists
+  return error == std::errc{} && end == file_name.data() + dash && number >= 0 && number < kLimit ? number : -1;
 }
 
 }  // namespace opponens::storage

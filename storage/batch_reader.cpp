@@ -25,6 +25,20 @@ void check_bytes(const ReadOnlyFile& file) {
                      std::to_string(file.size()) + " bytes)");
 }
 
+namespace {
+
+/// Of a damaged file the schema cannot be believed.
+std::optional<ContentsReader> open_contents(const ReadOnlyFile& file) {
+  try {
+    return ContentsReader::open(file);
+  } catch (const NewerSchemaError&) {
+    check_bytes(file);
+    throw;
+  }
+}
+
+}  // namespace
+
 struct BatchReader::Parts {
   ReadOnlyFile file;
   std::string name;
@@ -32,7 +46,7 @@ struct BatchReader::Parts {
   std::optional<Hdf5Batch> hdf5;  // when there are no contents
 
   explicit Parts(const std::filesystem::path& path)
-      : file(path), name(path.filename().string()), contents(ContentsReader::open(file)) {
+      : file(path), name(path.filename().string()), contents(open_contents(file)) {
     if (contents) return;
     check_bytes(file);
     hdf5.emplace(file);

@@ -175,6 +175,16 @@ std::vector<Catalog::Place> Catalog::find(const std::string& prefix) const {
   return places;
 }
 
+std::vector<Catalog::Place> Catalog::copies(Place place) const {
+  const std::string_view id = raw_id(place);
+  const std::vector<Key>& sorted = keys();
+  auto key = std::lower_bound(sorted.begin(), sorted.end(), id,
+                              [this](const Key& a, std::string_view raw) { return raw_id(a.place) < raw; });
+  std::vector<Place> places;
+  for (; key != sorted.end() && raw_id(key->place) == id; ++key) places.push_back(key->place);
+  return places;
+}
+
 std::optional<std::vector<IndexEntry>> Catalog::entries(const std::string& file) const {
   const auto block =
       std::find_if(blocks_.begin(), blocks_.end(), [&](const IndexBlock& known) { return known.file() == file; });

@@ -54,6 +54,8 @@ class Catalog {
   std::vector<IndexEntry> list(const std::string& kind) const;
   /// The first two objects whose ids begin with prefix.
   std::vector<Place> find(const std::string& prefix) const;
+  /// Every place of the object that is at one, in order of commit.
+  std::vector<Place> copies(Place place) const;
   bool contains(const std::string& id) const { return !find(id).empty(); }
   IndexEntry entry(Place place) const { return blocks_[place.block].entry(place.position); }
   /// What a file holds; nullopt when it is not known.

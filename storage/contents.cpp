@@ -6,9 +6,12 @@
 #include <bit>
 #include <cstdio>
 #include <cstring>
+#include <map>
 #include <string_view>
 
+#include "storage/batch_file.hpp"
 #include "storage/canonical.hpp"
+#include "storage/cursor.hpp"
 #include "storage/sha256.hpp"
 #include "storage/store.hpp"
 
@@ -16,10 +19,9 @@ namespace opponens::storage {
 namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-using Bytes = std::span<const std::byte>;
 
 constexpr std::string_view kPartMarker = "opponens object\n";      // 16 bytes before each part
-constexpr std::string_view kTrailerMarker = "opponens contents1";  // the last 18 bytes of the file
+constexpr std::string_view kTrailerMarker = "opponens contents1";  // the last 18 bytes; the last one is the schema
 constexpr std::size_t kTrailerBytes = 16 + kTrailerMarker.size();
 
 Bytes bytes_of(std::string_view text) { return std::as_bytes(std::span(text)); }
@@ -34,43 +36,10 @@ struct ContentsSink {
   void matrix(const Eigen::MatrixXd&) { place(); }
 };
 
-/// Takes values off the front of untrusted bytes.
-class Cursor {
- public:
-  explicit Cursor(Bytes bytes) : bytes_(bytes) {}
-  std::size_t position() const { return position_; }
-  bool at_end() const { return position_ == bytes_.size(); }
-  Bytes take(std::uint64_t count) {
-    if (count > bytes_.size() - position_) throw StorageError("its part of the contents ends too early");
-    const Bytes taken = bytes_.subspan(position_, static_cast<std::size_t>(count));
-    position_ += taken.size();
-    return taken;
-  }
-  std::uint64_t number() {
-    std::uint64_t value = 0;
-    std::memcpy(&value, take(sizeof value).data(), sizeof value);
-    return value;
-  }
-  std::string text() {
-    const Bytes bytes = take(number());
-    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-  }
-  /// A count of things that take eight bytes each at least.
-  std::uint64_t count() {
-    const std::uint64_t value = number();
-    if (value > (bytes_.size() - position_) / 8) throw StorageError("its part of the contents has an impossible count");
-    return value;
-  }
-  std::vector<std::string> texts() {
-    std::vector<std::string> values(static_cast<std::size_t>(count()));
-    for (auto& value : values) value = text();
-    return values;
-  }
-
- private:
-  Bytes bytes_;
-  std::size_t position_ = 0;
-};
+/// Made without going through rows that hold nothing, of which there may be very many.
+Field empty_matrix(std::uint64_t rows, std::uint64_t columns) {
+  return Eigen::MatrixXd(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns));
+}
 
 /// Decodes an object and takes its hash of the very bytes it decodes.
 class Decoder {
@@ -86,15 +55,15 @@ class Decoder {
     origin.command = cursor_.text();
     origin.inputs = cursor_.texts();
     for (std::uint64_t files = cursor_.count(); files > 0; --files) {
-      std::string name = cursor_.text();
-      origin.files.insert_or_assign(std::move(name), cursor_.text());
+      std::string name = next_name(origin.files);
+      origin.files.emplace_hint(origin.files.end(), std::move(name), cursor_.text());
     }
     origin.parameters = cursor_.text();
     origin.seed = cursor_.number();
     origin.program_version = cursor_.text();
     for (std::uint64_t fields = cursor_.count(); fields > 0; --fields) {
-      std::string name = cursor_.text();
-      record.fields.insert_or_assign(std::move(name), field());
+      std::string name = next_name(record.fields);
+      record.fields.emplace_hint(record.fields.end(), std::move(name), field());
     }
     if (!cursor_.at_end()) throw StorageError("its part of the contents is too long");
     hash_up_to(cursor_.position());
@@ -106,6 +75,14 @@ class Decoder {
   void hash_up_to(std::size_t end) {
     hash_.update(skeleton_.subspan(hashed_, end - hashed_));
     hashed_ = end;
+  }
+
+  /// One form of bytes for one record: otherwise several ids would name what is read as the same.
+  template <typename Value>
+  std::string next_name(const std::map<std::string, Value>& before) {
+    std::string name = cursor_.text();
+    if (before.empty() || before.rbegin()->first < name) return name;
+    throw StorageError("its part of the contents is not in order of name");
   }
 
   Field field() {
@@ -127,6 +104,7 @@ class Decoder {
         const std::uint64_t rows = cursor_.number();
         const std::uint64_t columns = cursor_.number();
         const std::span<double> values = array(rows, columns);
+        if (values.empty()) return empty_matrix(rows, columns);
         return Eigen::MatrixXd(Eigen::Map<const RowMajor>(values.data(), static_cast<Eigen::Index>(rows),
                                                           static_cast<Eigen::Index>(columns)));
       }
@@ -142,6 +120,8 @@ class Decoder {
     constexpr std::uint64_t kLargestIndex = 1ULL << 40U;  // also a side without values has to be an Eigen::Index
     if (!fits || rows > kLargestIndex || columns > kLargestIndex)
       throw StorageError("an array is larger than the file");
+    taken_ += rows * columns;  // arrays do not overlap, so that a small file cannot ask for a large memory
+    if (taken_ > most) throw StorageError("its arrays together are larger than the file");
     hash_up_to(cursor_.position());
     const std::uint64_t place = cursor_.number();
     hashed_ = cursor_.position();  // the place is not part of the hash
@@ -157,6 +137,7 @@ class Decoder {
   Cursor cursor_;
   Sha256 hash_;
   std::size_t hashed_ = 0;
+  std::uint64_t taken_ = 0;  // values of all arrays so far
   std::vector<double> values_;
 };
 
@@ -177,6 +158,15 @@ std::string place_of(const ReadOnlyFile& file, std::size_t position) {
   char slot[40];
   std::snprintf(slot, sizeof slot, ": /objects/%06zu", position);
   return file.path().string() + slot;
+}
+
+/// marker is not ours; it may be that of another schema.
+void require_known_schema(const ReadOnlyFile& file, std::string_view marker) {
+  const char digit = marker.back();
+  if (marker.substr(0, marker.size() - 1) != kTrailerMarker.substr(0, marker.size() - 1)) return;
+  if (digit < '0' || digit > '9') return;
+  throw NewerSchemaError(file.path().string() + ": its contents are of schema version " + digit +
+                         ", but this program knows version 1; use a newer opponens to read it");
 }
 
 }  // namespace
@@ -210,7 +200,11 @@ std::vector<std::byte> ContentsBuilder::finish(std::uint64_t hdf5_bytes) {
 std::optional<ContentsReader> ContentsReader::open(const ReadOnlyFile& file) {
   std::vector<std::byte> trailer(kTrailerBytes);
   if (file.size() < kTrailerBytes || !file.read_at(file.size() - kTrailerBytes, trailer)) return std::nullopt;
-  if (std::memcmp(trailer.data() + 16, kTrailerMarker.data(), kTrailerMarker.size()) != 0) return std::nullopt;
+  const std::string_view marker(reinterpret_cast<const char*>(trailer.data()) + 16, kTrailerMarker.size());
+  if (marker != kTrailerMarker) {
+    require_known_schema(file, marker);
+    return std::nullopt;
+  }
   Cursor cursor(trailer);
   const std::uint64_t count = cursor.number();
   const std::uint64_t table = cursor.number();

@@ -45,7 +45,8 @@ struct ObjectHead {
 /// not fit throws StorageError.
 class ContentsReader {
  public:
-  /// nullopt when the file has no contents, or a table of them that is damaged.
+  /// nullopt when the file has no contents, or a table of them that is damaged. Throws NewerSchemaError when its last
+  /// byte, the schema, is a digit that this program does not know.
   static std::optional<ContentsReader> open(const ReadOnlyFile& file);
 
   std::size_t size() const { return starts_.size() - 1; }

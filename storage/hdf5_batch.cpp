@@ -76,15 +76,17 @@ struct Hdf5Batch::Parts {
 
 Hdf5Batch::Hdf5Batch(const ReadOnlyFile& file) {
   const auto lock = hdf5::lock_library();
-  parts_.reset(new Parts{file.path().string(), open_in_memory(file), {}});
-  const hdf5::Handle root = hdf5::open_group(parts_->file, "/");
-  if (hdf5::read_string(root, "format") != kBatchFormat) throw StorageError(parts_->path + ": not an opponens batch");
-  check_schema(root, parts_->path);
-  parts_->slots = hdf5::links(hdf5::open_group(root, "objects"));
+  // Not parts_ at once: its handles have to be closed under the lock when something throws.
+  auto parts = std::make_unique<Parts>(Parts{file.path().string(), open_in_memory(file), {}});
+  const hdf5::Handle root = hdf5::open_group(parts->file, "/");
+  if (hdf5::read_string(root, "format") != kBatchFormat) throw StorageError(parts->path + ": not an opponens batch");
+  check_schema(root, parts->path);
+  parts->slots = hdf5::links(hdf5::open_group(root, "objects"));
   // Slots have at least six digits; a longer number is a later one.
-  std::stable_sort(parts_->slots.begin(), parts_->slots.end(),
+  std::stable_sort(parts->slots.begin(), parts->slots.end(),
                    [](const auto& a, const auto& b) { return a.size() < b.size(); });
-  for (std::size_t i = 0; i < parts_->slots.size(); ++i) check_schema(parts_->object(i), parts_->place(i));
+  for (std::size_t i = 0; i < parts->slots.size(); ++i) check_schema(parts->object(i), parts->place(i));
+  parts_ = std::move(parts);
 }
 
 Hdf5Batch::~Hdf5Batch() {

@@ -35,14 +35,14 @@ std::string name_of(hid_t id) {
   return name;
 }
 
-/// libhdf5 prints its error stack to stderr unless told not to.
-void silence() {
-  static const bool done = H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr) >= 0;
+/// libhdf5 prints its error stack to stderr unless told not to, and closes at exit what could not be closed, which
+/// crashes after a failed write (1.10.8). Before any other call.
+void prepare() {
+  static const bool done = H5dont_atexit() >= 0 && H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr) >= 0;
   (void)done;
 }
 
 Handle file_access() {
-  silence();
   Handle access = properties(H5P_FILE_ACCESS);
   // The oldest form that holds what is written, readable by every libhdf5. Newer superblocks carry a checksum that
   // H5Fget_file_image of libhdf5 1.10.8 leaves wrong; integrity is the SHA-256's business anyway.
@@ -99,16 +99,20 @@ std::uint64_t write_raw_dataset(const Handle& group, const std::string& name, hi
   static const Handle linking = utf8_names(H5P_LINK_CREATE);
   static const Handle transfer = transfer_properties();
   const Handle space = space_of(shape);
-  const Handle dataset(
+  Handle dataset(
       checked(H5Dcreate2(group.id(), name.c_str(), stored_type, space.id(), linking.id(), creation.id(), H5P_DEFAULT),
               group.id(), name, "create the dataset"),
       H5Dclose);
   const bool empty = std::find(shape.begin(), shape.end(), hsize_t{0}) != shape.end();
-  if (empty) return 0;
+  if (empty) {
+    dataset.finish();
+    return 0;
+  }
   checked(H5Dwrite(dataset.id(), memory_type, H5S_ALL, H5S_ALL, transfer.id(), data), group.id(), name,
           "write the dataset");
   const haddr_t place = H5Dget_offset(dataset.id());
   if (place == HADDR_UNDEF) fail(group.id(), name, "write the dataset", "its values have no place in the file");
+  dataset.finish();  // writes what is left of them
   return place;
 }
 
@@ -179,12 +183,15 @@ std::vector<std::string> take_strings(std::vector<char*>& raw, const Handle& typ
 
 std::unique_lock<std::recursive_mutex> lock_library() {
   static std::recursive_mutex library;
-  return std::unique_lock(library);
+  std::unique_lock lock(library);
+  prepare();
+  return lock;
 }
 
 Handle::~Handle() {
   if (id_ >= 0) close_(id_);
 }
+void Handle::finish() { checked(close_(std::exchange(id_, -1)), -1, "", "close"); }
 Handle::Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
 Handle& Handle::operator=(Handle&& other) noexcept {
   std::swap(id_, other.id_);
@@ -245,7 +252,7 @@ std::uint64_t write_dataset(const Handle& group, const std::string& name, const 
 }
 std::uint64_t write_dataset(const Handle& group, const std::string& name, const Eigen::MatrixXd& values) {
   const hsize_t shape[] = {static_cast<hsize_t>(values.rows()), static_cast<hsize_t>(values.cols())};
-  const RowMajor rows = values;
+  const RowMajor rows = values.size() == 0 ? RowMajor() : RowMajor(values);  // Eigen would go through empty rows
   return write_raw_dataset(group, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, shape, rows.data());
 }
 void write_dataset(const Handle& group, const std::string& name, const std::vector<std::string>& values) {

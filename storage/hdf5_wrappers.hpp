@@ -7,12 +7,15 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <mutex>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "core/require.hpp"
 #include "storage/record.hpp"
+#include "storage/store.hpp"
 
 namespace opponens::storage::hdf5 {
 
@@ -29,6 +32,7 @@ class Handle {
   Handle(Handle&& other) noexcept;
   Handle& operator=(Handle&& other) noexcept;
   std::int64_t id() const { return id_; }
+  void finish();  ///< closes; tells what the destructor cannot: that the last bytes do not fit on the disk
 
  private:
   std::int64_t id_;
@@ -42,7 +46,17 @@ std::vector<std::byte> image(const Handle& file);
 
 /// A file of any size on the disk, of the same form; an existing one is replaced.
 Handle create_on_disk(const std::string& path);
-void flush(const Handle& file);  ///< tells what closing could not
+void flush(const Handle& file);
+
+/// Runs what writes a file on the disk. That libhdf5 cannot is the fault of out's disk, not of a store.
+template <typename Action>
+void write_to(const std::filesystem::path& out, const Action& action) {
+  try {
+    action();
+  } catch (const StorageError&) {
+    throw InputError(out.string() + ": cannot write: disk full?");
+  }
+}
 
 /// Opens the bytes of a file, read-only. name is for messages.
 Handle open_in_memory(std::span<const std::byte> bytes, const std::string& name);

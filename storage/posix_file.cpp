@@ -192,6 +192,14 @@ DirectoryLock::DirectoryLock(const std::filesystem::path& directory, Wait wait)
 DirectoryLock::~DirectoryLock() { ::close(descriptor_); }
 
 Draft::Draft(std::filesystem::path final_path)
-    : final_(std::move(final_path)), path_(final_.string() + ".tmp-" + std::to_string(::getpid())) {}
+    : final_(std::move(final_path)), path_(final_.string() + ".tmp-" + std::to_string(::getpid())) {
+  std::error_code ignored;
+  std::filesystem::remove(path_, ignored);
+}
+
+void Draft::complete() const {
+  rename_file(path_, final_);
+  sync_directory(final_.has_parent_path() ? final_.parent_path() : ".");
+}
 
 }  // namespace opponens::storage

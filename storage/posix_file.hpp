@@ -86,7 +86,8 @@ class DirectoryLock {
   bool held_ = false;
 };
 
-/// A file that is written under another name until it is complete; removed when it never is.
+/// A file that is written under another name until it is complete; removed when it never is. What a killed process of
+/// the same number left there goes first.
 class Draft {
  public:
   explicit Draft(std::filesystem::path final_path);
@@ -97,7 +98,7 @@ class Draft {
   Draft(const Draft&) = delete;
   Draft& operator=(const Draft&) = delete;
   const std::filesystem::path& path() const { return path_; }
-  void complete() const { rename_file(path_, final_); }
+  void complete() const;  ///< durable when what was written is
 
  private:
   std::filesystem::path final_;

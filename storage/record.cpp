@@ -23,6 +23,7 @@ struct HashSink {
   }
   void vector(const Eigen::VectorXd& values) { doubles(values.data(), values.size()); }
   void matrix(const Eigen::MatrixXd& values) {
+    if (values.size() == 0) return;
     const RowMajor rows = values;
     doubles(rows.data(), rows.size());
   }

@@ -15,21 +15,29 @@
 #include "storage/catalog.hpp"
 #include "storage/contents.hpp"
 #include "storage/posix_file.hpp"
+#include "storage/store_files.hpp"
 
 namespace opponens::storage {
 namespace {
 
 namespace fs = std::filesystem;
 
+struct Damage {
+  std::string reason;
+  bool unreadable = false;
+};
+
 /// The first thing wrong with a file.
-std::optional<std::string> damage_of(const fs::path& path) {
+std::optional<Damage> damage_of(const fs::path& path) {
   try {
     const std::vector<std::string> sentences = BatchReader(path).check();
-    return sentences.empty() ? std::nullopt : std::optional(sentences.front());
+    return sentences.empty() ? std::nullopt : std::optional(Damage{sentences.front(), false});
   } catch (const NewerSchemaError&) {
     throw;
   } catch (const StorageError& error) {
-    return error.what();
+    return Damage{error.what(), false};
+  } catch (const InputError& error) {
+    return Damage{error.what(), true};
   }
 }
 
@@ -52,11 +60,21 @@ std::string rewrite(const fs::path& directory, const std::string& damaged, const
   }
   const auto bytes = encode_batch(pointers, ids);
   const std::string name = batch_file_name(static_cast<std::size_t>(batch_number(damaged)), bytes);
-  const fs::path temporary = directory / (".tmp-" + std::to_string(::getpid()) + "-" + name);
+  const fs::path temporary = directory / (kTemporaryPrefix + std::to_string(::getpid()) + "-" + name);
   write_new_file(temporary, bytes, Durable::yes);
   rename_file(temporary, directory / name);
   sync_directory(directory);
   return name;
+}
+
+/// The copy is on the disk before the original goes.
+void copy_aside(const fs::path& file, const fs::path& place) {
+  const Draft draft(place);
+  std::error_code error;
+  fs::copy_file(file, draft.path(), error);
+  if (error) throw InputError(place.string() + ": cannot set the damaged file aside: " + error.message());
+  sync_file(draft.path());
+  draft.complete();
 }
 
 /// Gives the file a second name in damaged/; its first one stays until what is intact has been written.
@@ -66,21 +84,22 @@ void keep_aside(const fs::path& directory, const std::string& file) {
   fs::create_directories(folder, error);
   if (error) throw InputError(folder.string() + ": cannot make the folder: " + error.message());
   fs::path place = folder / file;
-  for (int i = 2; fs::exists(place); ++i) place = folder / (file + "." + std::to_string(i));
+  for (int i = 2; fs::exists(place); ++i) {
+    if (fs::equivalent(directory / file, place, error)) return;  // by a run that was killed after it
+    place = folder / (file + "." + std::to_string(i));
+  }
   fs::create_hard_link(directory / file, place, error);
-  if (error) fs::copy_file(directory / file, place, error);  // file systems without links
-  if (error) throw InputError(place.string() + ": cannot set the damaged file aside: " + error.message());
+  if (error) copy_aside(directory / file, place);  // file systems without links
   sync_directory(folder);
+  sync_directory(directory);  // the folder itself
 }
 
 class Repair {
  public:
   Repair(fs::path directory, bool dry_run) : directory_(std::move(directory)), dry_run_(dry_run) {
-    for (const auto& name : directory_entries(directory_)) {
-      if (batch_number(name) >= 0) files_.push_back(name);
-    }
-    std::stable_sort(files_.begin(), files_.end(),
-                     [](const auto& a, const auto& b) { return batch_number(a) < batch_number(b); });
+    const std::vector<std::string> names = directory_entries(directory_);
+    if (!dry_run_) remove_leftovers(directory_, names);
+    files_ = batch_files(names);
   }
 
   RepairReport run() {
@@ -101,14 +120,18 @@ class Repair {
 
  private:
   void look_at(const std::string& file, const std::optional<std::vector<IndexEntry>>& known) {
-    const std::optional<std::string> reason = damage_of(directory_ / file);
-    if (!reason) {
+    const std::optional<Damage> damage = damage_of(directory_ / file);
+    if (damage && damage->unreadable) {
+      report_.files.push_back({file, damage->reason, {}, {}, known.has_value(), true});
+      if (!known) return;
+    }
+    if (!damage || damage->unreadable) {
       after_.append(file, known ? *known : BatchReader(directory_ / file).entries());
       kept_.push_back(file);
       return;
     }
     const std::vector<Record> records = salvage(ReadOnlyFile(directory_ / file));
-    DamagedFile damaged{file, *reason, entries_for(records), known.value_or(std::vector<IndexEntry>()),
+    DamagedFile damaged{file, damage->reason, entries_for(records), known.value_or(std::vector<IndexEntry>()),
                         known.has_value()};
     if (!dry_run_) keep_aside(directory_, file);
     std::string replacement = file;  // also its name when nothing but the end of the file was lost

@@ -20,6 +20,7 @@ struct DamagedFile {
   std::vector<IndexEntry> saved;  ///< objects still intact (rewritten unless the run was dry)
   std::vector<IndexEntry> lost;   ///< objects that the index knows to have been in it and that no other file holds
   bool index_knew_it = false;     ///< when not, more objects than those in lost may be gone
+  bool unreadable = false;        ///< the system does not let us read it: neither judged nor set aside
 };
 
 struct Dangling {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "storage/single_file.hpp"
 
+#include <optional>
+#include <stdexcept>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
@@ -9,6 +11,7 @@
 #include "core/require.hpp"
 #include "storage/batch_file.hpp"
 #include "storage/contents.hpp"
+#include "storage/hdf5_wrappers.hpp"
 #include "storage/posix_file.hpp"
 
 namespace opponens::storage {
@@ -22,11 +25,15 @@ class Copier {
   explicit Copier(Store& target) : target_(target) {
     for (const auto& entry : target.list()) present_.insert(entry.id);
   }
-  bool wants(const std::string& id) const { return !present_.contains(id); }
+  /// Throws StorageError when the target holds it, but damaged.
+  bool wants(const std::string& id) const {
+    if (present_.contains(id)) target_.require_intact(id);
+    return !present_.contains(id) && !added_.contains(id);
+  }
   void add(Record record, const std::string& id) {
     bytes_ += payload_bytes(record);
     records_.push_back(std::move(record));
-    present_.insert(id);
+    added_.insert(id);
     if (bytes_ >= kCommitBytes) commit();
   }
   void commit() {
@@ -37,10 +44,20 @@ class Copier {
 
  private:
   Store& target_;
-  std::unordered_set<std::string> present_;
+  std::unordered_set<std::string> present_;  // from the start
+  std::unordered_set<std::string> added_;
   std::vector<Record> records_;
   std::size_t bytes_ = 0;
 };
+
+/// What this program would not have written; the file may come from anybody.
+void require_storable(const Record& record, const std::filesystem::path& file, const std::string& id) {
+  try {
+    check_storable(record);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(file.string() + ": object " + id + ": " + error.what());
+  }
+}
 
 }  // namespace
 
@@ -76,12 +93,14 @@ Closure closure_of(const Store& store, const std::vector<std::string>& ids) {
 void export_single_file(const Store& store, const std::vector<IndexEntry>& objects, const std::filesystem::path& out,
                         const Step& step) {
   const Draft draft(out);
-  BatchFileWriter writer(draft.path());
+  std::optional<BatchFileWriter> writer;
+  hdf5::write_to(out, [&] { writer.emplace(draft.path()); });
   for (std::size_t i = 0; i < objects.size(); ++i) {
     step(i, objects.size());
-    writer.add(store.read(objects[i].id), objects[i].id);
+    const Record record = store.read(objects[i].id);
+    hdf5::write_to(out, [&] { writer->add(record, objects[i].id); });
   }
-  writer.finish();
+  hdf5::write_to(out, [&] { writer->finish(); });
   draft.complete();
 }
 
@@ -104,6 +123,7 @@ std::vector<std::string> import_single_file(const std::filesystem::path& file, S
     step(i, contents->size());
     ids.push_back(contents->head(i).id);
     Record record = contents->read(i, ids.back());
+    require_storable(record, file, ids.back());
     if (copier.wants(ids.back())) copier.add(std::move(record), ids.back());
   }
   copier.commit();

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <exception>
 #include <unordered_set>
 #include <utility>
 
@@ -13,6 +14,7 @@
 #include "storage/catalog.hpp"
 #include "storage/posix_file.hpp"
 #include "storage/production_order.hpp"
+#include "storage/store_files.hpp"
 
 namespace opponens::storage {
 namespace {
@@ -20,47 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kBatchBytes = 16U << 20U;  // payload of one file; two of them are in memory while it is made
-constexpr const char* kTemporaryPrefix = ".tmp-";
 constexpr const char* kRunLog = "runs.jsonl";
-
-/// Batch files in order of commit: by number, then by name (two writers without a lock may take the same number).
-std::vector<std::string> batch_files(const std::vector<std::string>& names) {
-  std::vector<std::string> files;
-  for (const auto& name : names) {
-    if (batch_number(name) >= 0) files.push_back(name);
-  }
-  std::stable_sort(files.begin(), files.end(),
-                   [](const auto& a, const auto& b) { return batch_number(a) < batch_number(b); });
-  return files;
-}
-
-std::vector<std::string> batch_files(const fs::path& directory) { return batch_files(directory_entries(directory)); }
-
-void create_store(const fs::path& directory) {
-  std::error_code error;
-  fs::create_directories(directory, error);
-  if (error) throw InputError(directory.string() + ": cannot make the store: " + error.message());
-  if (::access(directory.c_str(), W_OK | X_OK) != 0) throw_errno("cannot write in the store", directory);
-}
-
-/// Returns its batch files.
-std::vector<std::string> require_store(const fs::path& directory) {
-  std::error_code error;
-  const fs::file_status status = fs::status(directory, error);
-  if (!fs::exists(status)) throw InputError(directory.string() + ": no such store: " + error.message());
-  if (!fs::is_directory(status)) throw InputError(directory.string() + ": not a directory, so not a store");
-  std::vector<std::string> files = batch_files(directory);
-  if (fs::exists(directory / kIndexName) || !files.empty()) return files;
-  throw InputError(directory.string() + ": not a store: it holds neither " + kIndexName + " nor any batch file");
-}
-
-/// What a writer left that died between creating and renaming. Only to be called under the lock.
-void remove_leftovers(const fs::path& directory, const std::vector<std::string>& names) {
-  for (const auto& name : names) {
-    std::error_code ignored;
-    if (name.starts_with(kTemporaryPrefix)) fs::remove(directory / name, ignored);
-  }
-}
 
 /// Consecutive runs of fresh records, each of at most kBatchBytes of payload (or one record).
 std::vector<std::vector<std::size_t>> split(const std::vector<Record>& records, const std::vector<std::size_t>& fresh) {
@@ -108,6 +70,7 @@ struct Store::State {
   void write_batches(const fs::path& directory, std::size_t number, const std::vector<Record>& records,
                      const std::vector<std::string>& ids, const std::vector<std::size_t>& fresh);
   Catalog::Place find(const fs::path& directory, const std::string& id) const;
+  Record read(const fs::path& directory, Catalog::Place place) const;
 };
 
 Store::Store(fs::path directory, bool create) : directory_(std::move(directory)), state_(std::make_unique<State>()) {
@@ -134,7 +97,7 @@ void Store::State::refresh(const fs::path& directory, const std::vector<std::str
       catalog.append(file, BatchReader(directory / file).entries());
     } catch (const NewerSchemaError&) {
       throw;
-    } catch (const StorageError& error) {
+    } catch (const std::runtime_error& error) {  // damaged, or the system does not let us read it
       unreadable.emplace_back(error.what());
     }
   }
@@ -172,7 +135,11 @@ std::vector<std::string> Store::commit(const std::vector<Record>& records) {
   std::vector<std::size_t> fresh;
   std::unordered_set<std::string> seen;
   for (std::size_t i = 0; i < records.size(); ++i) {
-    if (!state_->catalog.contains(ids[i]) && seen.insert(ids[i]).second) fresh.push_back(i);
+    if (state_->catalog.contains(ids[i])) {
+      require_intact(ids[i]);
+    } else if (seen.insert(ids[i]).second) {
+      fresh.push_back(i);
+    }
   }
   if (seen.size() < std::unordered_set<std::string>(ids.begin(), ids.end()).size()) {
     // Before the files: should writing them fail, the line names what is not there and says nothing.
@@ -230,16 +197,35 @@ Catalog::Place Store::State::find(const fs::path& directory, const std::string& 
                    " and " + catalog.entry(found[1]).id);
 }
 
+Record Store::State::read(const fs::path& directory, Catalog::Place place) const {
+  const IndexEntry entry = catalog.entry(place);
+  if (last == nullptr || last->file_name() != entry.file) {
+    last.reset();  // before the next one is opened: a file of another maker is kept in memory
+    last = std::make_unique<BatchReader>(directory / entry.file);
+  }
+  return last->read(place.position, entry.id);
+}
+
 IndexEntry Store::find(const std::string& id) const { return state_->catalog.entry(state_->find(directory_, id)); }
 
 Record Store::read(const std::string& id) const {
-  const Catalog::Place place = state_->find(directory_, id);
-  const IndexEntry entry = state_->catalog.entry(place);
-  if (state_->last == nullptr || state_->last->file_name() != entry.file) {
-    state_->last.reset();  // before the next one is opened: a file of another maker is kept in memory
-    state_->last = std::make_unique<BatchReader>(directory_ / entry.file);
+  std::exception_ptr first;  // what is wrong with the earliest copy
+  for (const Catalog::Place place : state_->catalog.copies(state_->find(directory_, id))) {
+    try {
+      return state_->read(directory_, place);
+    } catch (const std::runtime_error&) {
+      if (!first) first = std::current_exception();
+    }
   }
-  return state_->last->read(place.position, entry.id);
+  std::rethrow_exception(first);
+}
+
+void Store::require_intact(const std::string& id) const {
+  try {
+    read(id);
+  } catch (const StorageError& error) {
+    throw StorageError(std::string(error.what()) + "; run opponens repair first");
+  }
 }
 
 std::vector<IndexEntry> Store::list(const std::string& kind) const {
@@ -265,7 +251,7 @@ std::vector<std::string> Store::check() const {
     }
     try {
       for (auto& sentence : BatchReader(path).check()) sentences.push_back(std::move(sentence));
-    } catch (const StorageError& error) {
+    } catch (const std::runtime_error& error) {
       sentences.emplace_back(error.what());
     }
   }

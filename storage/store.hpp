@@ -44,16 +44,20 @@ class Store {
   Store& operator=(Store&&) noexcept;
 
   /// Writes records as one file (several of bounded size when large): temporary file, fsync, rename, directory fsync.
-  /// Returns their ids in order. A record whose id is present already is not written again; a line of the run log then
-  /// says that it was made again. When anything fails the
-  /// store is as it was. Throws std::invalid_argument for a record that cannot be stored (see check_storable),
-  /// InputError when the disk is full or the directory cannot be written.
+  /// Returns their ids in order. A record whose id is present already is read, to be sure of it (see require_intact),
+  /// and not written again; a line of the run log then says that it was made again. When anything fails the store is as
+  /// it was. Throws std::invalid_argument for a record that cannot be stored (see check_storable), InputError when the
+  /// disk is full or the directory cannot be written.
   std::vector<std::string> commit(const std::vector<Record>& records);
 
   /// Reads one object and checks its content hash. id may be an unambiguous prefix. Throws InputError for an unknown or
   /// ambiguous id. Only the object's own bytes are read. The file read last stays open, so reading in order of commit
-  /// is cheapest: one pass over the disk, about the speed of SHA-256, and one object in memory.
+  /// is cheapest: one pass over the disk, about the speed of SHA-256, and one object in memory. Where several files
+  /// hold the object, the first intact copy is taken.
   Record read(const std::string& id) const;
+
+  /// Throws StorageError, which asks for a repair, unless the object can be read: before it counts as stored already.
+  void require_intact(const std::string& id) const;
 
   /// What the index tells of one object, found as above; nothing of it is read.
   IndexEntry find(const std::string& id) const;

@@ -4,13 +4,16 @@
 import csv
 import json
 import pathlib
+import resource
+import signal
+import subprocess
 import tempfile
 import unittest
 
 import h5py
 import numpy
 
-from support import HEADER, content_hash, data_set, must, read_object, run, snapshot
+from support import HEADER, PROGRAM, content_hash, data_set, must, read_object, run, snapshot
 
 SOURCE_YAML = "models/sources/west_r2g.yaml"
 
@@ -146,10 +149,27 @@ class StoreCommands(unittest.TestCase):
         code, _, err = run("export", self.synergies, "--store", self.store, "--format", "robomimic", "--out", out)
         self.assertEqual((code, "synergy_set" in err), (2, True))
 
+    def test_export_to_a_full_disk(self):
+        def limit():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))
+
+        for name, options in (("full.h5", ["--single-file"]), ("full.hdf5", ["--kind", "demonstration", "--format",
+                                                                             "robomimic", "--out"])):
+            folder = self.folder / ("disk_" + name)
+            folder.mkdir()
+            done = subprocess.run([PROGRAM, "export", "--store", self.store, *options, folder / name], preexec_fn=limit,
+                                  capture_output=True, text=True)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
+            self.assertIn("cannot write", done.stderr)
+            self.assertEqual(list(folder.iterdir()), [])
+
     def test_export_wrong_use(self):
         for arguments in ([], ["--format", "json"], ["--single-file", "a", "--format", "json"],
                           ["--single-file", "a", "--out", "b"], ["--format", "json", "--out", "x", "--kind", "none"],
-                          ["feed", "--single-file", "a"], ["--single-file", "/nowhere/a.h5"]):
+                          ["feed", "--single-file", "a"], [self.synergies, "--kind", "demonstration", "--single-file", "a"],
+                          [self.synergies, "--kind", "demonstration", "--format", "json", "--out", "x"], ["--single-file", "/nowhere/a.h5"]):
             code, _, err = run("export", "--store", self.store, *arguments)
             self.assertEqual(code, 2, arguments)
             self.assertEqual(len(err.strip().splitlines()), 1, err)
@@ -232,6 +252,11 @@ class StoreCommands(unittest.TestCase):
             self.assertEqual(set(named), {victim, self.synergies})
             self.assertEqual(named[victim]["file"], "r1.csv")
             self.assertEqual(named[self.synergies]["input"], victim)
+            other = self.folder / "as_it_was"
+            other.mkdir()
+            (other / "r1.csv").write_text(original)
+            document = must("stale", "--store", store, "--files", self.data, other)
+            self.assertEqual((document["stale"], document["files_ambiguous"]), ([], ["r1.csv"]))
             must("ingest", self.data, "--store", store, "--source", SOURCE_YAML)
             document = must("stale", "--store", store)
             self.assertIn(victim, [item["id"] for item in document["superseded"]])

@@ -36,6 +36,24 @@ def index_block(texts, entries, inputs):
     return block + bytes(-len(block) % 8)
 
 
+def u64(value):
+    return struct.pack("<Q", value)
+
+
+def text(value):
+    return u64(len(value)) + value
+
+
+def object_part():
+    """The contents' part of one object with a field of each type; its arrays begin with the file."""
+    skeleton = b"".join([text(b"opponens record 1"), text(b"document"), text(b"x"), text(b"c"), u64(1), text(b"i"),
+                         u64(1), text(b"f"), text(b"h"), text(b"{}"), u64(1), text(b"0.1.0"), u64(6),
+                         text(b"a"), u64(0), u64(0), text(b"b"), u64(1), u64(7), text(b"c"), u64(2),
+                         text(b"t"), text(b"d"), u64(3), u64(1), text(b"t"), text(b"e"), u64(4), u64(2),
+                         u64(0), text(b"f"), u64(5), u64(2), u64(1), u64(0)])
+    return b"opponens object\n" + text(bytes(64)) + text(skeleton)
+
+
 def seeds():
     csv = b"t,a,b,c\n0,1,2,3\n0.1,359,2.5,3\n0.2,1,1e1,3\n0,1,2,3\n0.1,2,3,4\n"
     yield "csv", b"\0" + csv
@@ -53,6 +71,8 @@ def seeds():
     yield "mat_layout", mat_file(matrix("X", 1, (1, 2), numbers("") + numbers("")))
     yield "index", index_block([b"f.h5", b"document", b"x"], [(1, 2, 0, 1), (1, 0, 1, 0)], [0])
     yield "index", index_block([b"f.h5"], [], [])
+    yield "contents", object_part()
+    yield "contents", object_part() * 2
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@
 
 #include "core/require.hpp"
 #include "storage/batch_file.hpp"
+#include "storage/single_file.hpp"
 #include "tests/storage/support.hpp"
 
 namespace opponens::storage::test {
@@ -124,6 +125,51 @@ TEST(Damage, IsReportedAndStopsWritingButWhatIsIntactCanBeRead) {
   EXPECT_TRUE(contains(message_of<StorageError>([&] { opened.read(store.ids[0]); }), {store.file}));
   EXPECT_TRUE(same(opened.read(intact), small_record(3)));
   EXPECT_EQ(opened.check().size(), 1U);
+}
+
+/// bytes with one bit changed inside the values of the record.
+std::string with_a_flipped_value(std::string bytes, const Record& record) {
+  const double value = std::get<Eigen::VectorXd>(record.fields.at("values"))[7];
+  std::string needle(sizeof value, '\0');
+  std::memcpy(needle.data(), &value, sizeof value);
+  const std::size_t at = bytes.find(needle);
+  EXPECT_NE(at, std::string::npos);
+  bytes.at(at) = static_cast<char>(bytes.at(at) ^ 1);
+  return bytes;
+}
+
+TEST(Damage, WhatIsThereButDamagedDoesNotCountAsStored) {
+  const DamagedStore store;
+  spill(store.path / store.file, with_a_flipped_value(store.bytes, store.records[1]));
+  Store opened(store.path, false);
+  EXPECT_TRUE(contains(message_of<StorageError>([&] { opened.commit({store.records[1]}); }),
+                       {store.file, "content hash", "; run opponens repair first"}));
+  EXPECT_EQ(opened.commit({store.records[0], small_record(9)}).front(), store.ids[0]);
+
+  TemporaryDirectory other;
+  Store source(other / "source", true);
+  source.commit({store.records[1]});
+  const Step ignored = [](std::size_t, std::size_t) {};
+  EXPECT_TRUE(contains(message_of<StorageError>([&] { merge_store(source, opened, ignored); }),
+                       {store.file, "; run opponens repair first"}));
+  export_single_file(source, source.list(), other / "single.h5", ignored);
+  EXPECT_TRUE(contains(message_of<StorageError>([&] { import_single_file(other / "single.h5", opened, ignored); }),
+                       {store.file, "; run opponens repair first"}));
+}
+
+TEST(Damage, AnIntactCopyIsReadWhereTheFirstIsDamaged) {
+  const DamagedStore store;
+  const Record* const record = &store.records[1];
+  const auto bytes = encode_batch(std::span(&record, 1), std::span(&store.ids[1], 1));
+  const std::string copy = batch_file_name(1, bytes);
+  spill(store.path / copy, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  ASSERT_EQ(Store(store.path, false).list().size(), 2U);  // the index knows both
+  spill(store.path / store.file, with_a_flipped_value(store.bytes, *record));
+  Store opened(store.path, false);
+  EXPECT_TRUE(same(opened.read(store.ids[1]), *record));
+  EXPECT_EQ(opened.commit({*record}).front(), store.ids[1]);
+  spill(store.path / copy, "");
+  EXPECT_TRUE(contains(message_of<StorageError>([&] { opened.read(store.ids[1]); }), {store.file, "content hash"}));
 }
 
 TEST(Damage, AMissingFileIsNotForgotten) {

@@ -5,6 +5,7 @@
 #include "core/require.hpp"
 #include "storage/batch_file.hpp"
 #include "storage/hdf5_wrappers.hpp"
+#include "storage/single_file.hpp"
 #include "tests/storage/support.hpp"
 
 namespace opponens::storage::test {
@@ -231,6 +232,32 @@ TEST(Store, NewerSchemaIsRefusedWithASentence) {
     EXPECT_TRUE(contains(message_of<StorageError>([&] { Store(directory / name, false); }),
                          {name, "schema version 2", "up to 1", "newer opponens"}));
   }
+}
+
+TEST(Store, NewerContentsAreRefusedWithASentence) {
+  const TemporaryDirectory directory;
+  const Step ignored = [](std::size_t, std::size_t) {};
+  Store store(directory / "store", true);
+  store.commit({small_record(1)});
+  const fs::path single = directory / "single.h5";
+  export_single_file(store, store.list(), single, ignored);
+  std::string bytes = slurp(single);
+  bytes.back() = '2';
+  spill(single, bytes);
+  EXPECT_TRUE(contains(message_of<NewerSchemaError>([&] { import_single_file(single, store, ignored); }),
+                       {"single.h5", "schema version 2", "newer opponens"}));
+  const std::string name = batch_file_name(0, std::as_bytes(std::span(bytes)));
+  spill(directory / "newer" / name, bytes);
+  EXPECT_TRUE(contains(message_of<NewerSchemaError>([&] { Store(directory / "newer", false); }), {name, "version 2"}));
+  spill(directory / "damaged" / name, bytes.replace(0, 1, "?"));  // its last byte cannot be believed either
+  EXPECT_TRUE(contains(message_of<StorageError>([&] { Store(directory / "damaged", false).list(); }),
+                       {name, "do not match the hash"}));
+}
+
+TEST(Store, BatchNumbersEndBeforeTheNextOneWouldNotExist) {
+  const std::string rest = "-" + std::string(32, 'a') + ".h5";
+  EXPECT_EQ(batch_number("4611686018427387903" + rest), 4611686018427387903);
+  EXPECT_EQ(batch_number("4611686018427387904" + rest), -1);
 }
 
 TEST(Store, RunLogIsBesideTheObjects) {
