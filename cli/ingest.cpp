@@ -106,6 +106,11 @@ storage::Record recording_record(const storage::Recording& recording, const stor
   Json parameters = {{"rows", file.rows}, {"trimmed_start_s", file.trimmed_start}, {"trimmed_end_s", file.trimmed_end}};
   const bool hand = source.kind == storage::RecordingKind::hand_demonstration;
   if (hand) parameters["hand"] = source.hand;
+  if (!file.observed_range.empty()) {
+    parameters["raw_range"] = file.observed_range;
+    parameters["calibrating_files_sha256"] = file.calibrated_by;
+  }
+  if (!file.dropped.empty()) parameters["dropped_channels"] = file.dropped;
   auto origin = provenance("ingest", {}, {}, parameters, 0);
   origin.files[source_name] = source_sha256;
   origin.files.insert(file.companions.begin(), file.companions.end());
@@ -165,9 +170,6 @@ class BatchWriter {
   std::vector<std::string> ids_;
 };
 
-/// Thrown out of the reader to end it early.
-struct Stop {};
-
 }  // namespace
 
 int ingest(const IngestOptions& options, const Console& console) {
@@ -179,14 +181,16 @@ int ingest(const IngestOptions& options, const Console& console) {
   storage::Summary summary;
   BatchWriter writer(options.common.store, console);
   try {
-    storage::read_source(options.paths, source, [&](storage::Recording&& recording) {
-      if (interrupt_requested) throw Stop();
+    const auto take = [&](storage::Recording&& recording) {
+      if (interrupt_requested) throw storage::ReadingInterrupted();
       storage::add(summary, recording);
       if (options.dry_run) return;
       const std::size_t bytes = sizeof(double) * static_cast<std::size_t>(recording.demonstration.q_h.size());
       writer.add(recording_record(recording, source, source_name, source_sha256), bytes);
-    });
-  } catch (const Stop&) {
+    };
+    storage::read_source(options.paths, source, take, [] { return interrupt_requested.load(); });
+  } catch (const storage::ReadingInterrupted&) {
+    // What is committed stays; finish() tells.
   }
   Json result = document("ingest");
   result["summary"] = summary_json(summary);

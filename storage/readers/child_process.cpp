@@ -25,6 +25,7 @@
 
 #include "core/require.hpp"
 #include "storage/posix_file.hpp"
+#include "storage/readers/source.hpp"
 #include "storage/store.hpp"
 
 namespace opponens::storage {
@@ -165,8 +166,10 @@ std::pair<std::string, std::string> receive(int pipe, const ChildLimits& limits,
   while (true) {
     const double left = std::chrono::duration<double>(deadline - Clock::now()).count();
     if (left <= 0.0) return {"", too_slow(limits)};
+    if (limits.interrupted && limits.interrupted()) throw ReadingInterrupted();
     pollfd wanted{pipe, POLLIN, 0};
-    const int ready = ::poll(&wanted, 1, static_cast<int>(std::min(left * 1e3, 1e6)) + 1);
+    constexpr double kPatience = 100.0;  // ms
+    const int ready = ::poll(&wanted, 1, static_cast<int>(std::min(left * 1e3, kPatience)) + 1);
     if (ready <= 0) continue;  // interrupted, or time is up
     const ssize_t count = ::read(pipe, chunk.data(), chunk.size());
     if (count < 0 && errno == EINTR) continue;

@@ -16,6 +16,7 @@ struct ChildLimits {
   std::uint64_t output = std::uint64_t{2} << 30;  ///< B that may come back
   double seconds = 60.0;                          ///< of wall clock and of CPU
   int memory_fill = 0;                            ///< byte that memory holds before it is written; 0: as it comes
+  std::function<bool()> interrupted{};            ///< asked while the child works: yes ends it (ReadingInterrupted)
 };
 
 /// Runs work in a child process and returns what it returned there; an InputError or StorageError thrown there is an

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <limits>
 #include <set>
 
@@ -22,7 +23,8 @@ namespace fs = std::filesystem;
 
 using TakeFile = std::function<void(const Table&, const RecordingFile&, const std::string& sha256)>;
 
-std::vector<Table> read_foreign(const fs::path& file, const SourceDescription& source) {
+std::vector<Table> read_foreign(const fs::path& file, const SourceDescription& source,
+                                const std::function<bool()>& interrupted) {
   const bool matlab = source.table.format == TableFormat::matlab;
   const auto work = [&] {
     return to_bytes(matlab ? read_matlab_tables(file, source) : read_hdf5_tables(file, source));
@@ -31,6 +33,7 @@ std::vector<Table> read_foreign(const fs::path& file, const SourceDescription& s
   const auto read = [&](int memory_fill) {
     ChildLimits limits;
     limits.memory_fill = memory_fill;
+    limits.interrupted = interrupted;
     return run_limited(file, kind, work, limits);
   };
   // A damaged file can make a library hand out memory that it never read into: then a second reading differs.
@@ -42,62 +45,52 @@ std::vector<Table> read_foreign(const fs::path& file, const SourceDescription& s
   return from_bytes(bytes, file, source);
 }
 
-void read_file_tables(RecordingFile file, const SourceDescription& source, const TakeFile& take) {
-  const std::string bytes = read_file(file.file);
-  const std::string hash = sha256(bytes);
-  if (!source.time.file.empty()) {
-    file.companions[source.time.file] = sha256(read_file(file.file.parent_path() / source.time.file));
+/// Block by block: files that a child reads may be larger than what this process should hold.
+std::string hash_of(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  Sha256 hash;
+  std::string block(1 << 20, '\0');
+  while (stream) {
+    stream.read(block.data(), static_cast<std::streamsize>(block.size()));
+    hash.update(std::string_view(block).substr(0, static_cast<std::size_t>(stream.gcount())));
   }
-  const auto take_table = [&](const Table& table) { take(table, file, hash); };
+  if (!stream.eof()) throw InputError(file.string() + ": cannot read it");
+  return hash.hex();
+}
+
+/// The recordings that PATHs lead to, and whether the user wants to wait for them.
+struct Reading {
+  const std::vector<fs::path>& paths;
+  const SourceDescription& source;
+  const std::function<bool()>& interrupted;
+};
+
+void read_file_tables(RecordingFile file, const Reading& reading, const TakeFile& take) {
+  const SourceDescription& source = reading.source;
+  if (!source.time.file.empty()) {
+    file.companions[source.time.file] = hash_of(file.file.parent_path() / source.time.file);
+  }
   if (source.table.format == TableFormat::csv || source.table.format == TableFormat::text) {
-    read_text_tables(bytes, file.file, source, take_table);
+    const std::string bytes = read_file(file.file);
+    const std::string hash = sha256(bytes);
+    read_text_tables(bytes, file.file, source, [&](const Table& table) { take(table, file, hash); });
   } else {
-    for (const auto& table : read_foreign(file.file, source)) take_table(table);
+    const std::string hash = hash_of(file.file);
+    for (const auto& table : read_foreign(file.file, source, reading.interrupted)) take(table, file, hash);
   }
 }
 
-void read_paths(const std::vector<fs::path>& paths, const SourceDescription& source, const TakeFile& take) {
+void read_paths(const Reading& reading, const TakeFile& take) {
   std::set<std::string> ids;
-  for (const auto& path : paths) {
-    for (const auto& file : find_recordings(path, source)) {
+  for (const auto& path : reading.paths) {
+    for (const auto& file : find_recordings(path, reading.source)) {
+      if (reading.interrupted && reading.interrupted()) throw ReadingInterrupted();
       if (!ids.insert(file.id).second) {
         const bool index = !file.index.empty();
         throw_input(index ? file.index : file.file, file.line, "recording", file.id, "each recording once");
       }
-      read_file_tables(file, source, take);
+      read_file_tables(file, reading, take);
     }
-  }
-}
-
-/// What a first reading of all recordings has found, in the unit of the files: neither standing still nor depending
-/// on other channels changes with unit, sign or calibration.
-struct Observations {
-  std::vector<Pair> range;  // of the recordings that calibrate
-  Summary summary;
-  bool calibrates = false;
-};
-
-void observe(const Table& table, const RecordingFile& file, const SourceDescription& source, Observations& seen) {
-  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  const auto rows = static_cast<Eigen::Index>(table.rows());
-  const auto channels = static_cast<Eigen::Index>(source.channels.size());
-  const Eigen::Map<const Rows> values(table.values.data(), rows, static_cast<Eigen::Index>(table.width));
-  Recording recording;
-  recording.demonstration.q_h = values.rightCols(channels);
-  for (const auto& channel : source.channels) recording.demonstration.joint_names.push_back(channel.joint);
-  add(seen.summary, recording);
-  const auto labels = labels_of(table, file, source);
-  const bool calibrates =
-      std::all_of(source.raw_range.observed_in.begin(), source.raw_range.observed_in.end(), [&](const auto& wanted) {
-        const auto found = labels.find(wanted.first);
-        return found != labels.end() && found->second == wanted.second;
-      });
-  if (!calibrates || rows == 0) return;
-  seen.calibrates = true;
-  for (Eigen::Index j = 0; j < channels; ++j) {
-    Pair& range = seen.range[static_cast<std::size_t>(j)];
-    range[0] = std::min(range[0], recording.demonstration.q_h.col(j).minCoeff());
-    range[1] = std::max(range[1], recording.demonstration.q_h.col(j).maxCoeff());
   }
 }
 
@@ -105,52 +98,120 @@ bool is_observed(const ChannelSource& channel, const SourceDescription& source) 
   return source.unit == AngleUnit::raw && !channel.raw && !source.raw_range.fixed;
 }
 
-/// Reads everything once beforehand when the description asks for what only all recordings together can tell.
-Survey survey_of(const std::vector<fs::path>& paths, const SourceDescription& source) {
+/// The least and largest counts of the recordings that calibrate, and what they were.
+struct Calibration {
+  std::vector<Pair> range;
+  std::map<std::string, std::string> files;  // name -> SHA-256
+  std::set<std::string> hashes;
+};
+
+void observe(const Table& table, const RecordingFile& file, const std::string& hash, const SourceDescription& source,
+             Calibration& seen) {
+  const auto labels = labels_of(table, file, source);
+  const bool calibrates =
+      std::all_of(source.raw_range.observed_in.begin(), source.raw_range.observed_in.end(), [&](const auto& wanted) {
+        const auto found = labels.find(wanted.first);
+        return found != labels.end() && found->second == wanted.second;
+      });
+  if (!calibrates || table.rows() == 0) return;
+  seen.files[file.file.filename().string()] = hash;
+  seen.hashes.insert(hash);
+  const std::size_t first = time_width(source);
+  for (std::size_t i = 0; i < table.values.size(); i += table.width) {
+    for (std::size_t j = 0; j < seen.range.size(); ++j) {
+      const double count = table.values[i + first + j];
+      seen.range[j] = {std::min(seen.range[j][0], count), std::max(seen.range[j][1], count)};
+    }
+  }
+}
+
+/// What every recording tells of the survey that it was read with (FileReport).
+FileReport made_with(const Survey& survey, const Calibration& seen, const SourceDescription& source) {
+  FileReport report;
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < source.channels.size(); ++i) {
+    const ChannelSource& channel = source.channels[i];
+    if (next == survey.kept.size() || survey.kept[next] != i) {
+      report.dropped.push_back(channel.joint);
+      continue;
+    }
+    ++next;
+    if (is_observed(channel, source)) report.observed_range[channel.joint] = survey.raw[i];
+  }
+  if (seen.hashes.empty()) return report;
+  constexpr std::size_t kListed = 16;  // more are not worth a list in each of their recordings
+  if (seen.hashes.size() <= kListed) report.companions = seen.files;
+  Sha256 all;
+  for (const auto& hash : seen.hashes) all.update(hash);
+  report.calibrated_by = all.hex();
+  return report;
+}
+
+/// Channels to leave out, by what the recordings become with all of them.
+std::set<std::string> dropped_channels(const Reading& reading, const Survey& survey) {
+  const SourceDescription& source = reading.source;
+  Summary summary;
+  read_paths(reading, [&](const Table& table, const RecordingFile& file, const std::string& hash) {
+    interpret(table, file, hash, source, survey, [&](Recording&& recording) { add(summary, recording); });
+  });
+  std::set<std::string> dropped;
+  for (const auto& channel : summary.channels) {
+    const bool stuck = channel.stuck_recordings == channel.recordings;
+    if (stuck && source.stuck == ChannelRule::drop) dropped.insert(channel.name);
+  }
+  if (source.dependent == ChannelRule::drop) {
+    for (const auto& channel : dependent_channels(summary)) dropped.insert(channel.name);
+  }
+  return dropped;
+}
+
+/// Reads everything beforehand when the description asks for what only all recordings together can tell: once for the
+/// counts, once, with these, for what the channels do.
+Survey survey_of(const Reading& reading, Calibration& seen) {
+  const SourceDescription& source = reading.source;
   const std::size_t count = source.channels.size();
   Survey survey{std::vector<Pair>(count, source.raw_range.fixed.value_or(Pair{0.0, 1.0})), {}};
-  const bool ranges = std::any_of(source.channels.begin(), source.channels.end(),
-                                  [&](const auto& channel) { return is_observed(channel, source); });
-  const bool drops = source.stuck == ChannelRule::drop || source.dependent == ChannelRule::drop;
-  std::set<std::string> dropped;
-  if (ranges || drops) {
+  for (std::size_t i = 0; i < count; ++i) survey.kept.push_back(i);
+  if (std::any_of(source.channels.begin(), source.channels.end(),
+                  [&](const auto& channel) { return is_observed(channel, source); })) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    Observations seen{std::vector<Pair>(count, Pair{kInfinity, -kInfinity}), {}, false};
-    read_paths(paths, source, [&](const Table& table, const RecordingFile& file, const std::string&) {
-      observe(table, file, source, seen);
+    seen.range.assign(count, Pair{kInfinity, -kInfinity});
+    read_paths(reading, [&](const Table& table, const RecordingFile& file, const std::string& hash) {
+      observe(table, file, hash, source, seen);
     });
-    if (ranges && !seen.calibrates) {
+    if (seen.hashes.empty()) {
       throw InputError(source.name + ": no recording has the labels of raw_range.observed_in: expected at least one");
     }
-    if (ranges) survey.raw = seen.range;
-    for (const auto& channel : seen.summary.channels) {
-      const bool stuck = channel.stuck_recordings == channel.recordings;
-      if (stuck && source.stuck == ChannelRule::drop) dropped.insert(channel.name);
-    }
-    if (source.dependent == ChannelRule::drop) {
-      for (const auto& channel : dependent_channels(seen.summary)) dropped.insert(channel.name);
-    }
+    survey.raw = seen.range;
   }
-  for (std::size_t i = 0; i < count; ++i) {
-    if (!dropped.contains(source.channels[i].joint)) survey.kept.push_back(i);
-  }
+  if (source.stuck != ChannelRule::drop && source.dependent != ChannelRule::drop) return survey;
+  const std::set<std::string> dropped = dropped_channels(reading, survey);
+  std::erase_if(survey.kept, [&](std::size_t i) { return dropped.contains(source.channels[i].joint); });
   if (survey.kept.empty()) throw InputError(source.name + ": every channel is stuck: expected one that moves");
   return survey;
 }
 
 }  // namespace
 
-void read_source(const std::vector<fs::path>& paths, const SourceDescription& source, const TakeRecording& take) {
-  const Survey survey = survey_of(paths, source);
+void read_source(const std::vector<fs::path>& paths, const SourceDescription& source, const TakeRecording& take,
+                 const std::function<bool()>& interrupted) {
+  const Reading reading{paths, source, interrupted};
+  Calibration seen;
+  const Survey survey = survey_of(reading, seen);
+  const FileReport common = made_with(survey, seen, source);
   std::set<std::string> ids;
   const auto take_new = [&](Recording&& recording) {
     // "a_1" of a file with trials may meet the file "a_1".
     if (!ids.insert(recording.demonstration.id).second) {
       throw_input(recording.file.file, 0, "recording", recording.demonstration.id, "each recording once");
     }
+    recording.file.observed_range = common.observed_range;
+    recording.file.dropped = common.dropped;
+    recording.file.calibrated_by = common.calibrated_by;
+    recording.file.companions.insert(common.companions.begin(), common.companions.end());
     take(std::move(recording));
   };
-  read_paths(paths, source, [&](const Table& table, const RecordingFile& file, const std::string& hash) {
+  read_paths(reading, [&](const Table& table, const RecordingFile& file, const std::string& hash) {
     interpret(table, file, hash, source, survey, take_new);
   });
 }

@@ -138,6 +138,9 @@ struct FileReport {
   int gaps = 0;                                   ///< steps above three times the median step
   double trimmed_start = 0.0;                     ///< s cut off before the movement
   double trimmed_end = 0.0;                       ///< s cut off after it
+  std::map<std::string, Pair> observed_range;     ///< channel -> counts, where they were found in recordings
+  std::string calibrated_by;                      ///< SHA-256 of these recordings' files' hashes, sorted
+  std::vector<std::string> dropped;               ///< channels of the description that were left out
 };
 
 /// Of one recording, after resampling: a day at 100 Hz. A longer one is a time column in another unit than seconds.
@@ -150,6 +153,7 @@ struct Recording {
   Demonstration demonstration;
   FileReport file;
 };
+struct ReadingInterrupted {};
 using TakeRecording = std::function<void(Recording&&)>;
 
 /// Reads recordings and hands them on one by one, in the order of paths and of the index (or of the files' names), so
@@ -157,9 +161,10 @@ using TakeRecording = std::function<void(Recording&&)>;
 /// such a directory. Labels: those of the description, "source", "kind" = "postures" of rows without time, and, when
 /// the description calibrates, "calibration" = "range by LABEL". What happens to the samples: docs/ingest.md. HDF5 and
 /// MATLAB files are parsed in a child process. Throws InputError with file, line, field, value and expectation; also
-/// when a recording would have more than kMaxSamples at the wanted rate.
+/// when a recording would have more than kMaxSamples at the wanted rate. interrupted is asked before each file and
+/// while a child works; when it says yes, ReadingInterrupted is thrown.
 void read_source(const std::vector<std::filesystem::path>& paths, const SourceDescription& source,
-                 const TakeRecording& take);
+                 const TakeRecording& take, const std::function<bool()>& interrupted = {});
 
 /// The same at once.
 std::vector<Recording> read_source(const std::vector<std::filesystem::path>& paths, const SourceDescription& source);

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/require.hpp"
+#include "storage/readers/source.hpp"
 #include "tests/storage/support.hpp"
 
 namespace opponens::storage::test {
@@ -67,6 +68,17 @@ TEST(ChildProcess, HangsAfterTheEndOfOutputEnd) {
                            },
                            limits),
                        {"some/file.mat", "did not end within"}));
+}
+
+TEST(ChildProcess, InterruptionEndsIt) {
+  ChildLimits limits;
+  int asked = 0;
+  limits.interrupted = [&] { return ++asked == 3; };
+  const auto endless = []() -> std::string {
+    while (true) ::pause();
+  };
+  EXPECT_THROW(run_limited("f", "HDF5", endless, limits), ReadingInterrupted);
+  EXPECT_EQ(asked, 3);
 }
 
 TEST(ChildProcess, DiesWithItsParent) {
