@@ -297,6 +297,9 @@ TEST(TextFormat, BadDescriptionsAreNamed) {
       {layout + "channels: [{column: '2', joint: I_MCP, rad: [0, 1]}]\n", {"unit is not raw"}},
       {layout + "channels: [{column: '4', joint: I_MCP}]\n", {"channel is '4': expected a column number from 1 to 3"}},
       {layout + "kind: hand_demonstration\n" + kTwo, {"hand", "hand.yaml"}},
+      {layout + "kind: hand_demonstration\nhand: h.yaml\n" + kTwo + kLabels +
+           "calibrate: {method: range, by: subject}\n",
+       {"calibrate", "nothing is mapped"}},
       {layout + "labels: {object: what}\n" + kTwo, {"'folder, object, subject'", "a label column 'what'"}},
       {layout + "labels: {kind: object}\n" + kTwo, {"no label 'kind'"}},
       {layout + "channels: {glove: cyberglove_22}\n", {"first_column"}},
