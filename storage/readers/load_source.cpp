@@ -276,6 +276,7 @@ SourceDescription parse_source(const std::string& text, const std::filesystem::p
   read_kind(root, source);
   read_recordings(root, source);
   read_table(root, source);
+  require_distinct_facts(root, source);
   read_labels(root, source);
   read_time(root, source);
   read_unit(root, source);

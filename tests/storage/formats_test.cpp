@@ -61,8 +61,9 @@ TEST(TextFormat, DatesRunOverMidnightAndTheEndOfTheYear) {
   EXPECT_NEAR(duration("2014 12 31 23 59 59.75", "2015 1 1 0 0 0.25"), 0.5, 1e-9);
   EXPECT_NEAR(duration("2016 2 28 23 59 59", "2016 3 1 0 0 1"), 86402.0, 1e-9) << "2016 has a 29 February";
   EXPECT_NEAR(duration("2100 2 28 23 59 59", "2100 3 1 0 0 1"), 2.0, 1e-9) << "2100 has none";
-  for (const std::string bad : {"2014 13 1 0 0 0", "2014 1 32 0 0 0", "2014 1 1 24 0 0", "2014 1 1 0 60 0",
-                                "2014 1 1.5 0 0 0", "2014 1 1 0 0 -1"}) {
+  for (const std::string bad :
+       {"2014 13 1 0 0 0", "2014 1 32 0 0 0", "2014 1 1 24 0 0", "2014 1 1 0 60 0", "2014 1 1.5 0 0 0",
+        "2014 1 1 0 0 -1", "2014 2 31 0 0 0", "2015 2 29 0 0 0", "2014 11 31 0 0 0"}) {
     EXPECT_TRUE(contains(TextSource(dates, "2013 1 1 0 0 0 1\n" + bad + " 2\n").refusal(), {"cup_s1.txt:2: field '"}))
         << bad;
   }
@@ -230,6 +231,8 @@ TEST(TextFormat, BadDescriptionsAreNamed) {
       {layout + "channels: [{column: '2', joint: I_MCP, rad: [0, 1]}]\n", {"unit is not raw"}},
       {layout + "channels: [{column: '4', joint: I_MCP}]\n", {"channel is '4': expected a column number from 1 to 3"}},
       {layout + "kind: hand_demonstration\n" + kTwo, {"hand", "hand.yaml"}},
+      {"table: {format: csv, run_by: [object]}\ntime: {rate: 5}\n" + kTwo, {"recordings", "run_by once", "'object'"}},
+      {"table: {format: csv, run_by: [trial]}\ntime: {rate: 5}\n" + kTwo, {"table", "'trial'"}},
       {layout + "kind: hand_demonstration\nhand: h.yaml\n" + kTwo + kLabels +
            "calibrate: {method: range, by: subject}\n",
        {"calibrate", "nothing is mapped"}},
