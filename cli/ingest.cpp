@@ -10,6 +10,7 @@
 #include "cli/resources.hpp"
 #include "cli/stored.hpp"
 #include "core/require.hpp"
+#include "robot/load_robot.hpp"
 #include "storage/codec.hpp"
 #include "storage/readers/source.hpp"
 
@@ -20,7 +21,8 @@ namespace {
 constexpr std::size_t kBatchRecordings = 256;
 constexpr std::size_t kBatchBytes = std::size_t{32} << 20;
 
-Json summary_json(const storage::Summary& summary) {
+Json summary_json(const storage::Summary& summary, bool postures) {
+  const auto timed = [&](double value) { return postures ? Json() : number(value); };
   Json channels = Json::array();
   for (const auto& channel : summary.channels) {
     channels.push_back({{"name", channel.name},
@@ -38,10 +40,10 @@ Json summary_json(const storage::Summary& summary) {
   }
   return {{"recordings", summary.recordings},
           {"samples", summary.samples},
-          {"duration_s", summary.duration},
-          {"lowest_rate_hz", number(summary.lowest_rate)},
-          {"highest_rate_hz", number(summary.highest_rate)},
-          {"largest_step_s", summary.largest_step},
+          {"duration_s", timed(summary.duration)},
+          {"lowest_rate_hz", timed(summary.lowest_rate)},
+          {"highest_rate_hz", timed(summary.highest_rate)},
+          {"largest_step_s", timed(summary.largest_step)},
           {"gaps", summary.gaps},
           {"channels", channels},
           {"labels", summary.recordings_per_label}};
@@ -120,6 +122,17 @@ storage::Record recording_record(const storage::Recording& recording, const stor
   return record;
 }
 
+/// Motions of a robot hand can be used by that hand only when its joints are the channels.
+void require_joints_of_hand(const storage::SourceDescription& source, const std::filesystem::path& source_file) {
+  if (source.kind != storage::RecordingKind::hand_demonstration) return;
+  const auto joints = robot::load_hand(find_file(source.hand)).hand_joints;
+  for (const auto& channel : source.channels) {
+    if (std::find(joints.begin(), joints.end(), channel.joint) != joints.end()) continue;
+    throw InputError(source_file.string() + ": channels: joint is '" + channel.joint + "': expected a joint of " +
+                     source.hand + ": " + joined(joints));
+  }
+}
+
 /// Collects records and commits them batch by batch; what is committed is said at once.
 class BatchWriter {
  public:
@@ -176,6 +189,7 @@ int ingest(const IngestOptions& options, const Console& console) {
   if (options.source.empty()) return ingest_single_files(options, console);
   const auto source_file = find_file(options.source);
   const auto source = storage::load_source(source_file);
+  require_joints_of_hand(source, source_file);
   const std::string source_sha256 = file_sha256(source_file);
   const std::string source_name = portable_name(source_file);
   storage::Summary summary;
@@ -193,7 +207,7 @@ int ingest(const IngestOptions& options, const Console& console) {
     // What is committed stays; finish() tells.
   }
   Json result = document("ingest");
-  result["summary"] = summary_json(summary);
+  result["summary"] = summary_json(summary, !source.time.present());
   const auto dropped = dropped_channels(summary, source);
   result["summary"]["dropped_channels"] = dropped;
   result["stored"] = !options.dry_run;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <set>
 #include <utility>
@@ -160,9 +161,15 @@ bool CsvReader::next() {
 }
 
 double CsvReader::number(std::size_t column) const {
-  const std::string_view text = cells_[column];
+  std::string_view text = cells_[column];
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  // Out of range is also what is too small to be told from 0.
+  if (error == std::errc::result_out_of_range && end == text.data() + text.size() &&
+      std::abs(std::strtod(std::string(text).c_str(), nullptr)) < 1.0) {
+    return 0.0;
+  }
   if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) {
     fail(column, "a finite number");
   }

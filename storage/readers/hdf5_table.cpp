@@ -13,6 +13,7 @@
 #include "storage/hdf5_wrappers.hpp"
 #include "storage/readers/csv.hpp"
 #include "storage/readers/table.hpp"
+#include "storage/text.hpp"
 
 namespace opponens::storage {
 namespace {
@@ -201,7 +202,8 @@ std::string as_text(const Field& value) {
 void add_attributes(const Handle& group, const SourceDescription& source, Table& table) {
   const std::vector<std::string> there = hdf5::attributes(group);
   for (const auto& [label, fact] : source.labels) {
-    if (!std::binary_search(there.begin(), there.end(), fact)) continue;
+    const bool name_of_group = fact == "group" && !table.part.empty();
+    if (name_of_group || !std::binary_search(there.begin(), there.end(), fact)) continue;
     const std::string text = as_text(hdf5::read_attribute(group, fact));
     if (!text.empty()) table.facts[fact] = text;
   }
@@ -224,6 +226,7 @@ std::vector<Table> read_hdf5_tables(const fs::path& file, const SourceDescriptio
   }
   const Handle parent = hdf5::open_group(root, source.table.group);
   for (const auto& name : hdf5::links(parent)) {
+    if (!is_utf8(name)) throw InputError(file.string() + ": a group's name in " + source.table.group + " is not UTF-8");
     const Handle group = hdf5::open_group(parent, name);
     tables.push_back(read_group(group, file, source));
     tables.back().part = name;

@@ -160,6 +160,10 @@ Samples process(Samples samples, const SourceDescription& source, FileReport& re
     require_resamplable(samples, *source.resample_rate, report.file);
     samples = resample(samples, *source.resample_rate);
   }
+  if (source.resample_rate && samples.time.size() < 2) {
+    throw_input(report.file, 0, "number of samples after resampling", std::to_string(samples.time.size()),
+                "at least 2: a higher resample.rate, or a longer recording");
+  }
   if (source.trim) samples = trim(samples, *source.trim);
   const Eigen::Index kept = samples.time.size();
   if (kept < 2) {
@@ -195,7 +199,14 @@ std::pair<double, double> date_of(const Table& table, Eigen::Index row, const fs
              "year, month, day, hour, minute, second of a date; this field from " + shortest(kLimits[i][0]) + " to " +
                  shortest(kLimits[i][1]));
   }
-  return {days_of(fields[0], fields[1], fields[2]), 3600.0 * fields[3] + 60.0 * fields[4] + fields[5]};
+  const double month_begin = days_of(fields[0], fields[1], 1.0);
+  const double month_end =
+      fields[1] == 12.0 ? days_of(fields[0] + 1.0, 1.0, 1.0) : days_of(fields[0], fields[1] + 1.0, 1.0);
+  if (fields[2] > month_end - month_begin) {
+    fail_row(table, file, row, source.time.columns[2], fields[2],
+             "a day of that month, which has " + shortest(month_end - month_begin));
+  }
+  return {month_begin + fields[2] - 1.0, 3600.0 * fields[3] + 60.0 * fields[4] + fields[5]};
 }
 
 }  // namespace

@@ -236,6 +236,7 @@ void read_processing(const Section& root, SourceDescription& source) {
   }
   if (root.has("calibrate")) {
     const Section calibrate = root.inside("calibrate", {"method", "by"});
+    if (source.kind == RecordingKind::hand_demonstration) root.fail("calibrate", "no such key: nothing is mapped");
     if (calibrate.text("method") != "range") calibrate.fail("method", "range");
     source.calibrate_by = calibrate.text("by");
     const std::string& by = *source.calibrate_by;
@@ -275,6 +276,7 @@ SourceDescription parse_source(const std::string& text, const std::filesystem::p
   read_kind(root, source);
   read_recordings(root, source);
   read_table(root, source);
+  require_distinct_facts(root, source);
   read_labels(root, source);
   read_time(root, source);
   read_unit(root, source);

@@ -94,6 +94,7 @@ void read_text_tables(const std::string& bytes, const std::filesystem::path& fil
     if (table.values.empty()) table.first_line = source.table.transposed ? 0 : csv.line();
     for (const auto column : columns.numbers) table.values.push_back(csv.number(column));
   }
+  if (table.values.empty() && !columns.texts.empty()) throw_input(file, 0, "number of rows", "0", "at least 2 samples");
   take(std::move(table));
 }
 

@@ -174,4 +174,19 @@ double Section::number(const YAML::Node& node, const std::string& field, const s
   return value;
 }
 
+void require_distinct_facts(const Section& root, const SourceDescription& source) {
+  std::set<std::string> seen{"run", "group", "trial"};
+  std::vector<std::string> names = source.recordings.parts;
+  for (const auto& cells : source.table.cells) names.push_back(cells.name);
+  names.insert(names.end(), source.table.run_by.begin(), source.table.run_by.end());
+  for (const auto& name : names) {
+    if (seen.insert(name).second) continue;
+    const bool part = std::count(source.recordings.parts.begin(), source.recordings.parts.end(), name) > 0;
+    root.fail(part ? "recordings" : "table",
+              "each name of parts, cells and run_by once, and none of run, group, trial; "
+              "not '" +
+                  name + "'");
+  }
+}
+
 }  // namespace opponens::storage

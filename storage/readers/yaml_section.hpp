@@ -78,4 +78,7 @@ class Section {
   std::string name_;
 };
 
+/// Every fact has one source: throws when parts, cells and run_by give a name twice, or one that the reader gives.
+void require_distinct_facts(const Section& root, const SourceDescription& source);
+
 }  // namespace opponens::storage

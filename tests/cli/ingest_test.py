@@ -108,12 +108,23 @@ class Batches(unittest.TestCase):
             self.assertEqual(second["summary"][key], first["summary"][key])
         self.assertEqual(must("show", "--store", self.folder / "other")["objects"][0]["kind"], "hand_demonstration")
 
+    def test_a_joint_that_the_hand_has_not_is_refused(self):
+        self.record(1)
+        text = YAML + "kind: hand_demonstration\nhand: models/ur5_allegro/allegro_right.yaml\n"
+        (self.folder / "source.yaml").write_text(text)
+        code, _, err = run(*self.arguments())
+        self.assertEqual(code, 2)
+        self.assertIn("joint is 'I_MCP': expected a joint of models/ur5_allegro/allegro_right.yaml: joint_0.0", err)
+        self.assertFalse(self.store.exists())
+
     def test_postures_have_no_phases(self):
         self.record(4, rows=30)
         yaml = YAML.replace("{column: '1'}", "none").replace("[{column: '2', joint: I_MCP}]",
                                                               "[{column: '1', joint: I_MCP}, {column: '2', joint: I_PIP}]")
         (self.folder / "source.yaml").write_text(yaml)
-        must(*self.arguments())
+        summary = must(*self.arguments())["summary"]
+        self.assertIsNone(summary["duration_s"])
+        self.assertIsNone(summary["highest_rate_hz"])
         code, _, err = run("analyze", "--store", self.store, "--group-by", "source")
         self.assertEqual(code, 2)
         self.assertIn("holds postures without time: it has no phases to split", err)

@@ -12,7 +12,7 @@
 namespace opponens::robot {
 namespace {
 
-Eigen::VectorXd random_position(const RobotModel& hand, Rng& rng) {
+Eigen::VectorXd any_posture(const RobotModel& hand, Rng& rng) {
   Eigen::VectorXd q(hand.dof());
   for (int i = 0; i < hand.dof(); ++i) q[i] = rng.uniform(hand.lower()[i], hand.upper()[i]);
   return q;
@@ -41,8 +41,8 @@ TEST(TipResiduals, JacobiansAreTheDerivatives) {
   Rng rng(31);
   for (const bool paper : {true, false}) {
     for (int sample = 0; sample < 10; ++sample) {
-      const FingertipFit fit = fit_to(hands, random_position(hands.hand, rng), paper);
-      const Eigen::VectorXd q = random_position(hands.hand, rng);
+      const FingertipFit fit = fit_to(hands, any_posture(hands.hand, rng), paper);
+      const Eigen::VectorXd q = any_posture(hands.hand, rng);
       const TipResiduals residuals(hands.hand, fit, q, 0, 0.7);
       const Eigen::Index rows = 3 * static_cast<Eigen::Index>(fit.targets.size());
       const auto size = static_cast<Eigen::Index>(fit.fitted.size());
@@ -95,9 +95,9 @@ TEST(FitFingertips, RejectedStepsAreNotConvergence) {
   int converged = 0;
   int early = 0;
   for (int sample = 0; sample < 300; ++sample) {
-    FingertipFit fit = fit_to(hands, random_position(hands.hand, rng), false);
+    FingertipFit fit = fit_to(hands, any_posture(hands.hand, rng), false);
     for (TipTarget& target : fit.targets) target.path *= 30.0;
-    Eigen::MatrixXd q = random_position(hands.hand, rng);
+    Eigen::MatrixXd q = any_posture(hands.hand, rng);
     if (!fit_fingertips(hands.hand, fit, settings, q)->converged) continue;
     ++converged;
     Eigen::MatrixXd further = q;

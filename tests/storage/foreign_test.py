@@ -92,6 +92,7 @@ def hdf5(folder, rng):
             group = file.create_group(f"data/{name}")
             group.attrs["num_samples"] = len(q)
             group.attrs["task"] = "lift"
+            group.attrs["group"] = "not its name"
             group["obs/q"] = q + (name == "demo_1")
             group["obs/grip"] = numpy.arange(9, dtype="i4")
             group["obs/t"] = (numpy.arange(9) / 20).astype("f4")
@@ -115,6 +116,9 @@ def hdf5(folder, rng):
     short = rate + "channels: [{column: obs/grip, joint: I_MCP}, {column: obs/short, joint: I_PIP}]\n"
     refused(read(folder, short, path), "lift.hdf5")
     refused(read(folder, rate.replace("data", "other") + channels, path), "other")
+    with h5py.File(folder / "latin.h5", "w") as file:
+        file.create_group("data").create_group(b"d\xe9mo")
+    refused(read(folder, rate + channels, folder / "latin.h5"), "latin.h5", "is not UTF-8")
     (folder / "text.h5").write_text("hello")
     refused(read(folder, rate + channels, folder / "text.h5"), "text.h5")
 

@@ -6,29 +6,12 @@
 #include "core/require.hpp"
 #include "storage/readers/source.hpp"
 #include "tests/storage/support.hpp"
+#include "tests/storage/text_source.hpp"
 
 namespace opponens::storage::test {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-
-/// Reads one text file "cup_s1.txt" through a description.
-struct TextSource {
-  TemporaryDirectory directory;
-  std::string yaml;
-
-  explicit TextSource(const std::string& rest, const std::string& text) {
-    yaml = "name: made_up\nrecordings: {files: '([a-z]+)_s([0-9])\\.txt', parts: [object, subject]}\n" + rest;
-    spill(directory / "data/cup_s1.txt", text);
-  }
-  std::vector<Recording> read() const { return read_source({directory / "data"}, parse_source(yaml, "made_up.yaml")); }
-  std::string refusal() const {
-    return message_of<InputError>([&] { read(); });
-  }
-};
-
-const std::string kTwo = "channels: [{column: '2', joint: I_MCP}, {column: '3', joint: I_PIP}]\n";
-const std::string kLabels = "labels: {object: object, subject: subject, hand: {constant: right}}\n";
 
 Eigen::MatrixXd matrix(int columns, const std::vector<double>& values) {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -78,8 +61,9 @@ TEST(TextFormat, DatesRunOverMidnightAndTheEndOfTheYear) {
   EXPECT_NEAR(duration("2014 12 31 23 59 59.75", "2015 1 1 0 0 0.25"), 0.5, 1e-9);
   EXPECT_NEAR(duration("2016 2 28 23 59 59", "2016 3 1 0 0 1"), 86402.0, 1e-9) << "2016 has a 29 February";
   EXPECT_NEAR(duration("2100 2 28 23 59 59", "2100 3 1 0 0 1"), 2.0, 1e-9) << "2100 has none";
-  for (const std::string bad : {"2014 13 1 0 0 0", "2014 1 32 0 0 0", "2014 1 1 24 0 0", "2014 1 1 0 60 0",
-                                "2014 1 1.5 0 0 0", "2014 1 1 0 0 -1"}) {
+  for (const std::string bad :
+       {"2014 13 1 0 0 0", "2014 1 32 0 0 0", "2014 1 1 24 0 0", "2014 1 1 0 60 0", "2014 1 1.5 0 0 0",
+        "2014 1 1 0 0 -1", "2014 2 31 0 0 0", "2015 2 29 0 0 0", "2014 11 31 0 0 0"}) {
     EXPECT_TRUE(contains(TextSource(dates, "2013 1 1 0 0 0 1\n" + bad + " 2\n").refusal(), {"cup_s1.txt:2: field '"}))
         << bad;
   }
@@ -139,56 +123,6 @@ TEST(TextFormat, StuckAndDependentChannelsAreDroppedWhenAsked) {
   EXPECT_EQ(names("stuck: drop\n"), (Names{"I_MCP", "I_PIP", "M_MCP"}));
   EXPECT_EQ(names("dependent: drop\n"), (Names{"I_MCP", "I_PIP", "R_MCP"}));
   EXPECT_EQ(names("stuck: drop\ndependent: drop\n"), (Names{"I_MCP", "I_PIP"}));
-}
-
-TEST(Channels, WhatIsDroppedIsDecidedOnWhatIsStored) {
-  // M_MCP moves only before the time at which trimming begins to keep: it is stuck in what is stored.
-  std::string text;
-  for (int i = 0; i < 20; ++i) {
-    text += std::to_string(i) + " " + std::to_string(i < 10 ? 0 : i) + " " +
-            std::to_string(i < 3 ? 0.001 * i : 0.5e-2) + "\n";
-  }
-  const std::string yaml =
-      "table: {format: text, columns: 3}\ntime: {column: '1'}\nchannels: [{column: '2', joint: I_MCP}, {column: '3', "
-      "joint: M_MCP}]\ntrim: {speed: 0.5, window: 1}\n";
-  EXPECT_EQ(TextSource(yaml, text).read().at(0).demonstration.joint_names.size(), 2U);
-  const auto found = TextSource(yaml + "stuck: drop\n", text).read();
-  EXPECT_EQ(found.at(0).demonstration.joint_names, std::vector<std::string>{"I_MCP"});
-  EXPECT_EQ(found[0].file.dropped, std::vector<std::string>{"M_MCP"});
-}
-
-TEST(Channels, ARecordingTellsWhatItsCountsWereComparedWith) {
-  TextSource source(
-      "table: {format: text, columns: 3}\ntime: {column: '1'}\nunit: raw\nraw_range: {observed_in: {subject: '2'}}\n"
-      "channels: [{column: '2', joint: I_MCP, rad: [0, 1], raw: [0, 9]}, {column: '3', joint: I_PIP, rad: [0, 1]}]\n" +
-          kLabels,
-      "0 1 2\n1 3 4\n");
-  spill(source.directory / "data/cup_s2.txt", "0 1 20\n1 3 70\n");
-  const auto read = source.read();
-  ASSERT_EQ(read.size(), 2U);
-  EXPECT_EQ(read[0].file.observed_range, (std::map<std::string, Pair>{{"I_PIP", {20, 70}}}));
-  EXPECT_TRUE(read[0].file.companions.contains("cup_s2.txt"));
-  spill(source.directory / "data/cup_s2.txt", "0 1 20\n1 3 80\n");
-  const auto again = source.read();
-  EXPECT_EQ(again[0].file.sha256, read[0].file.sha256);
-  EXPECT_NE(again[0].file.calibrated_by, read[0].file.calibrated_by);
-  EXPECT_EQ(again[0].file.observed_range.at("I_PIP")[1], 80);
-}
-
-TEST(Interruption, EndsAnyPassOverTheFiles) {
-  const TextSource source("table: {format: text, columns: 3}\ntime: {column: '1'}\nstuck: drop\n" + kTwo,
-                          "0 1 2\n1 3 4\n");
-  const auto description = parse_source(source.yaml, "made_up.yaml");
-  int asked = 0;
-  const auto read = [&](int stop) {
-    asked = 0;
-    read_source(
-        {source.directory / "data"}, description, [](Recording&&) {}, [&] { return ++asked == stop; });
-  };
-  EXPECT_NO_THROW(read(0));
-  EXPECT_EQ(asked, 2);  // the survey, and the reading
-  EXPECT_THROW(read(1), ReadingInterrupted);
-  EXPECT_THROW(read(2), ReadingInterrupted);
 }
 
 TEST(TextFormat, WrappedAnglesStartNearZeroAndDoNotJump) {
@@ -297,6 +231,11 @@ TEST(TextFormat, BadDescriptionsAreNamed) {
       {layout + "channels: [{column: '2', joint: I_MCP, rad: [0, 1]}]\n", {"unit is not raw"}},
       {layout + "channels: [{column: '4', joint: I_MCP}]\n", {"channel is '4': expected a column number from 1 to 3"}},
       {layout + "kind: hand_demonstration\n" + kTwo, {"hand", "hand.yaml"}},
+      {"table: {format: csv, run_by: [object]}\ntime: {rate: 5}\n" + kTwo, {"recordings", "run_by once", "'object'"}},
+      {"table: {format: csv, run_by: [trial]}\ntime: {rate: 5}\n" + kTwo, {"table", "'trial'"}},
+      {layout + "kind: hand_demonstration\nhand: h.yaml\n" + kTwo + kLabels +
+           "calibrate: {method: range, by: subject}\n",
+       {"calibrate", "nothing is mapped"}},
       {layout + "labels: {object: what}\n" + kTwo, {"'folder, object, subject'", "a label column 'what'"}},
       {layout + "labels: {kind: object}\n" + kTwo, {"no label 'kind'"}},
       {layout + "channels: {glove: cyberglove_22}\n", {"first_column"}},

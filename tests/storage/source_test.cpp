@@ -82,6 +82,18 @@ TEST(Source, AcceptsByteOrderMarkCrLfAndBlankEnd) {
   EXPECT_EQ(reading[1].demonstration.q_h, reading[0].demonstration.q_h);
 }
 
+TEST(Source, AcceptsPlusSignsAndNumbersTooSmallToTell) {
+  const Files files("data/csv/a.csv", "t,index_base,I_PIP,pressure\n0,+90,1e-330,5\n+1,9e+1,-1e-999,5\n");
+  const Demonstration motion = files.read()[0].demonstration;
+  EXPECT_EQ(motion.q_h(0, 0), motion.q_h(1, 0));
+  EXPECT_EQ(motion.q_h.col(1).cwiseAbs().maxCoeff(), 0.0);
+}
+
+TEST(Source, ResamplingThatLeavesOneSampleNamesTheRate) {
+  const Files files("source.yaml", kYaml + "resample: {rate: 0.1}\n");
+  EXPECT_TRUE(contains(files.refusal(), {"after resampling is '1'", "resample.rate"}));
+}
+
 TEST(Source, OneRecordingCanBeGiven) {
   const Files files;
   const SourceDescription source = load_source(files.directory / "source.yaml");
@@ -178,6 +190,8 @@ TEST(Source, BadRecordingsNameFileLineFieldValueAndExpectation) {
       {name, "t,index_base,I_PIP,pressure\n", {"b.csv: number of rows is '0'", "at least 2"}},
       {name, replaced(good, "-45", "nan"), {"b.csv:3: field 'index_base' is 'nan': expected a finite number"}},
       {name, replaced(good, "-45", "inf"), {"b.csv:3: field 'index_base' is 'inf'"}},
+      {name, replaced(good, "-45", "+-4"), {"b.csv:3: field 'index_base' is '+-4'"}},
+      {name, replaced(good, "-45", "1e-330x"), {"b.csv:3: field 'index_base' is '1e-330x'"}},
       {name, replaced(good, "-45", "4x"), {"b.csv:3: field 'index_base' is '4x': expected a finite number"}},
       {name, replaced(good, "-45", ""), {"b.csv:3: field 'index_base' is ''"}},
       {name, replaced(good, "-45", "1e999"), {"b.csv:3: field 'index_base' is '1e999'"}},
