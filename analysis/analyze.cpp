@@ -56,17 +56,20 @@ std::vector<Group> form_groups(const std::vector<Movement>& movements, bool spli
   return result;
 }
 
+/// A person: subjects of different sources are different people, though both be called "1".
+std::string person(const Movement& movement) { return movement.source + '\n' + movement.subject; }
+
 /// One cluster per subject, or per recording when all parts are of one subject.
 void form_clusters(Group& group, const std::vector<Movement>& movements) {
   std::set<std::string> subjects;
-  for (const Part& part : group.parts) subjects.insert(movements[part.movement].subject);
+  for (const Part& part : group.parts) subjects.insert(person(movements[part.movement]));
   const bool by_subject = subjects.size() > 1;
   group.report.cluster = by_subject ? "subject" : "recording";
   std::map<std::string, std::size_t> index;
   std::vector<PairwiseMerge> trees;
   for (Part& part : group.parts) {
     const Movement& movement = movements[part.movement];
-    part.cluster = by_subject ? index.try_emplace(movement.subject, trees.size()).first->second : trees.size();
+    part.cluster = by_subject ? index.try_emplace(person(movement), trees.size()).first->second : trees.size();
     if (part.cluster == trees.size()) trees.emplace_back();
     trees[part.cluster].add(part.before ? movement.before : movement.after);
   }

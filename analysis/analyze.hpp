@@ -65,7 +65,8 @@ struct GroupReport {
 };
 
 struct TransitionReport {
-  std::string demonstration;  ///< id
+  std::string demonstration;  ///< id, unique in its source
+  std::string source;         ///< label "source"; empty: none
   Transition likeness;
   Transition changepoint;
   std::optional<double> likeness_error;  ///< found - known, fraction of the recording; simulated movements only

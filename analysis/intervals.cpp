@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <boost/math/distributions/students_t.hpp>
+
 #include "analysis/pca.hpp"
 #include "analysis/statistics.hpp"
 #include "core/require.hpp"
@@ -113,8 +115,36 @@ Eigen::MatrixXd bootstrap_cumulative_variance(const std::vector<SampleStatistics
   return shares;
 }
 
+std::vector<Interval> jackknife_intervals(const std::vector<SampleStatistics>& clusters, double confidence) {
+  check(confidence, clusters.size());
+  const auto size = static_cast<Eigen::Index>(clusters.size());
+  const Eigen::VectorXd estimate = cumulative_variance(principal_axes(pooled(clusters)).variance);
+  Eigen::MatrixXd without(size, estimate.size());
+  for (Eigen::Index c = 0; c < size; ++c) {
+    std::vector<SampleStatistics> others = clusters;
+    others.erase(others.begin() + c);
+    without.row(c) = cumulative_variance(principal_axes(pooled(others)).variance).transpose();
+  }
+  const auto count = static_cast<double>(size);
+  const double t = boost::math::quantile(boost::math::students_t(count - 1.0), 0.5 + 0.5 * confidence);
+  std::vector<Interval> intervals;
+  for (Eigen::Index i = 0; i < estimate.size(); ++i) {
+    const double low = std::min(estimate[i], without.col(i).minCoeff());
+    const double high = std::max(estimate[i], without.col(i).maxCoeff());
+    if (certain(low) || certain(high)) {
+      intervals.push_back({low, high});
+      continue;
+    }
+    const Eigen::ArrayXd pseudo = count * logit(estimate[i]) - (count - 1.0) * without.col(i).unaryExpr(&logit).array();
+    const double error = std::sqrt((pseudo - pseudo.mean()).square().sum() / (count * (count - 1.0)));
+    intervals.push_back({logistic(pseudo.mean() - t * error), logistic(pseudo.mean() + t * error)});
+  }
+  return intervals;
+}
+
 std::vector<Interval> cumulative_variance_intervals(const std::vector<SampleStatistics>& clusters, int replicates,
                                                     double confidence, Rng& rng) {
+  if (clusters.size() < kFewClusters) return jackknife_intervals(clusters, confidence);
   const Eigen::VectorXd estimate = cumulative_variance(principal_axes(pooled(clusters)).variance);
   const Eigen::MatrixXd shares = bootstrap_cumulative_variance(clusters, replicates, rng);
   std::vector<Interval> intervals;

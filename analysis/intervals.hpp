@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include <Eigen/Core>
@@ -38,7 +39,19 @@ Interval percentile_interval(std::vector<double> replicates, double confidence);
 /// space of the analysis, at least two. Cost per replicate O(c n^2 + n^3).
 Eigen::MatrixXd bootstrap_cumulative_variance(const std::vector<SampleStatistics>& clusters, int replicates, Rng& rng);
 
-/// One basic_logit_interval per number of synergies, [n].
+/// Fewer clusters than this are too few to resample: with 5, basic_logit_interval holds the true share of the first 1,
+/// 3, 6 synergies in 83, 34, 6 % of data sets instead of 95 %.
+inline constexpr std::size_t kFewClusters = 20;
+
+/// Intervals of the same shares by the jackknife on the logit: each cluster left out in turn gives a pseudo-value;
+/// their mean, which corrects the bias of a share from few clusters, plus and minus Student's t of c - 1 degrees of
+/// freedom times their standard error. Holds the shares above in 88, 84, 63 % with 5 clusters, 84 to 92 % with 12:
+/// better, and still too narrow for late synergies (docs/deviations.md, 18). A share that is 1 with or without a
+/// cluster has no logit: then the range of the shares. Source: Tukey 1958; Miller 1974, doi:10.1093/biomet/61.1.1. Cost
+/// O(c n^3).
+std::vector<Interval> jackknife_intervals(const std::vector<SampleStatistics>& clusters, double confidence);
+
+/// One interval per number of synergies, [n]: basic_logit_interval, or jackknife_intervals for fewer than kFewClusters.
 std::vector<Interval> cumulative_variance_intervals(const std::vector<SampleStatistics>& clusters, int replicates,
                                                     double confidence, Rng& rng);
 

@@ -22,6 +22,8 @@ void check(const SampleStatistics& a, const SampleStatistics& b, double ridge) {
               b.covariance.rows() == n && b.covariance.cols() == n,
           "likeness: the two sets differ in dimension");
   require(std::isfinite(ridge) && ridge >= 0.0, "likeness: ridge must be a variance >= 0");
+  require(a.mean.allFinite() && b.mean.allFinite() && a.covariance.allFinite() && b.covariance.allFinite(),
+          "likeness: a mean or covariance is not finite");
 }
 
 Eigen::MatrixXd with_ridge(Eigen::MatrixXd covariance, double ridge) {

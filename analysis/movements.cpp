@@ -52,6 +52,7 @@ Result<TransitionReport> find_transition(const Demonstration& demonstration, con
   if (!curves) return tl::make_unexpected(curves.error());
   TransitionReport report;
   report.demonstration = demonstration.id;
+  report.source = label(demonstration, "source");
   report.likeness = transition(demonstration, *curves, TransitionRule::likeness);
   report.changepoint = transition(demonstration, *curves, TransitionRule::changepoint);
   report.dropped_channels = curves->dropped_channels;

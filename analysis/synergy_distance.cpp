@@ -70,7 +70,7 @@ double subspace_distance(const Eigen::VectorXd& angles, int k_a, int k_b) {
   return std::sqrt(angles.squaredNorm() + std::abs(k_a - k_b) * std::numbers::pi * std::numbers::pi / 4.0);
 }
 
-Result<SynergyComparison> compare(const SynergyGroup& a, const SynergyGroup& b, double resolution) {
+Result<SynergyComparison> compare(const SynergyGroup& a, const SynergyGroup& b, std::optional<double> resolution) {
   if (a.box.scale.size() != b.box.scale.size()) {
     return failure(FailureCode::invalid_input, "group " + a.name + ": of " + std::to_string(a.box.scale.size()) +
                                                    " joints in one set and " + std::to_string(b.box.scale.size()) +
@@ -80,11 +80,6 @@ Result<SynergyComparison> compare(const SynergyGroup& a, const SynergyGroup& b, 
   const Eigen::MatrixXd span_b = span_in_joints(b.box);
   const SampleStatistics moments_a = statistics_in_joints(a);
   const SampleStatistics moments_b = statistics_in_joints(b);
-  const double ridge = resolution * resolution;
-  const Result<double> bhattacharyya = bhattacharyya_distance(moments_a, moments_b, ridge);
-  if (!bhattacharyya) return tl::make_unexpected(bhattacharyya.error());
-  const Result<double> likeness = log_likeness(moments_a, moments_b, ridge);
-  if (!likeness) return tl::make_unexpected(likeness.error());
   SynergyComparison result;
   result.group = a.name;
   result.k_a = static_cast<int>(span_a.cols());
@@ -93,6 +88,12 @@ Result<SynergyComparison> compare(const SynergyGroup& a, const SynergyGroup& b, 
   result.distance = subspace_distance(result.angles, result.k_a, result.k_b);
   result.shared_a = share_inside(moments_a.covariance, span_b);
   result.shared_b = share_inside(moments_b.covariance, span_a);
+  if (!resolution) return result;
+  const double ridge = *resolution * *resolution;
+  const Result<double> bhattacharyya = bhattacharyya_distance(moments_a, moments_b, ridge);
+  if (!bhattacharyya) return tl::make_unexpected(bhattacharyya.error());
+  const Result<double> likeness = log_likeness(moments_a, moments_b, ridge);
+  if (!likeness) return tl::make_unexpected(likeness.error());
   result.bhattacharyya = *bhattacharyya;
   result.log_likeness = *likeness;
   return result;
@@ -105,16 +106,17 @@ Result<std::vector<SynergyComparison>> compare(const SynergySet& a, const Synerg
   if (a.order != b.order) {
     return failure(FailureCode::invalid_input, "one synergy set is of joint positions, the other of joint velocities");
   }
+  const auto ridge = a.order == 0 ? std::optional(resolution) : std::nullopt;
   std::vector<SynergyComparison> result;
   if (a.pre_grasp.phase == b.pre_grasp.phase) {
-    const Result<SynergyComparison> common = compare(a.pre_grasp, b.pre_grasp, resolution);
+    const Result<SynergyComparison> common = compare(a.pre_grasp, b.pre_grasp, ridge);
     if (!common) return tl::make_unexpected(common.error());
     result.push_back(*common);
   }
   for (const SynergyGroup& group : a.grasp) {
     const SynergyGroup* other = find(b, group.name);
     if (other == nullptr || other->phase != group.phase) continue;
-    const Result<SynergyComparison> one = compare(group, *other, resolution);
+    const Result<SynergyComparison> one = compare(group, *other, ridge);
     if (!one) return tl::make_unexpected(one.error());
     result.push_back(*one);
   }

@@ -30,20 +30,22 @@ struct SynergyComparison {
   std::string group;
   int k_a = 0;
   int k_b = 0;
-  Eigen::VectorXd angles;      ///< [min(k_a, k_b)] rad
-  double distance = 0.0;       ///< rad, subspace_distance
-  double shared_a = 0.0;       ///< share of a's variance that lies in the span of b's kept synergies, in [0, 1]
-  double shared_b = 0.0;       ///< share of b's variance in the span of a's
-  double bhattacharyya = 0.0;  ///< distance of the two normal distributions, >= 0
-  double log_likeness = 0.0;   ///< Eq. (1) of the two
+  Eigen::VectorXd angles;  ///< [min(k_a, k_b)] rad
+  double distance = 0.0;   ///< rad, subspace_distance
+  double shared_a = 0.0;   ///< share of a's variance that lies in the span of b's kept synergies, in [0, 1]
+  double shared_b = 0.0;   ///< share of b's variance in the span of a's
+  std::optional<double> bhattacharyya;  ///< distance of the two normal distributions, >= 0
+  std::optional<double> log_likeness;   ///< Eq. (1) of the two
 };
 
-/// Compares two groups over the same joints. resolution: of the sensors, rad; its square is the ridge of the last two.
-/// Fails (invalid_input) when the joints' numbers differ, (degenerate) when a covariance is singular without a ridge.
-Result<SynergyComparison> compare(const SynergyGroup& a, const SynergyGroup& b, double resolution);
+/// Compares two groups over the same joints. resolution: of the sensors, rad; its square is the ridge of the last two,
+/// which are left out without it. Fails (invalid_input) when the joints' numbers differ, (degenerate) when a covariance
+/// is singular without a ridge.
+Result<SynergyComparison> compare(const SynergyGroup& a, const SynergyGroup& b, std::optional<double> resolution);
 
-/// Compares the groups that both sets have (by name; the pre-grasp first). Fails when the sets are of different joints,
-/// of different order, or have no group in common.
+/// Compares the groups that both sets have (by name; the pre-grasp first). Of velocities (order 1) without the last
+/// two: what the resolution in rad makes of them depends on the sampling, which a set does not tell. Fails when the
+/// sets are of different joints, of different order, or have no group in common.
 Result<std::vector<SynergyComparison>> compare(const SynergySet& a, const SynergySet& b, double resolution);
 
 }  // namespace opponens::analysis

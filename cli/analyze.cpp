@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/analyze.hpp"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "cli/commands.hpp"
@@ -51,7 +52,18 @@ analysis::JointRanges joint_ranges(const storage::Record& record) {
   if (record.kind != kHandMotion)
     throw InputError("--space normalized needs motions of a robot hand; run: opponens retarget");
   const robot::RobotModel hand(hand_of_motion(record));
-  return {hand.lower(), hand.upper()};
+  const std::vector<std::string> names = storage::decode_demonstration(record).joint_names;
+  const auto size = static_cast<Eigen::Index>(names.size());
+  analysis::JointRanges ranges{Eigen::VectorXd(size), Eigen::VectorXd(size)};
+  for (Eigen::Index i = 0; i < size; ++i) {  // by name: a recording of a robot hand has an order of its own
+    const std::string& name = names[static_cast<std::size_t>(i)];
+    const auto found = std::find(hand.joint_names().begin(), hand.joint_names().end(), name);
+    if (found == hand.joint_names().end()) throw InputError("--space normalized: the hand has no joint " + name);
+    const auto joint = found - hand.joint_names().begin();
+    ranges.lower[i] = hand.lower()[joint];
+    ranges.upper[i] = hand.upper()[joint];
+  }
+  return ranges;
 }
 
 /// first: one of the motions.
@@ -63,7 +75,11 @@ AnalysisSettings settings_from(const AnalyzeOptions& options, const storage::Sto
   settings.group_by = options.group_by;
   settings.order = options.order;
   settings.seed = options.common.seed;
+  settings.resolution = options.resolution;
+  if (options.min_window > 0) settings.min_window = options.min_window;
   if (options.phase == "none") {
+    if (!options.transition.empty())
+      throw InputError("--phase none makes no split: --transition has nothing to decide");
     settings.transition.reset();
   } else if (options.transition == "changepoint") {
     settings.transition = analysis::TransitionRule::changepoint;
@@ -106,6 +122,7 @@ Json transition_json(const analysis::TransitionReport& found, analysis::Transiti
   const bool likeness = rule == analysis::TransitionRule::likeness;
   const auto& one = likeness ? found.likeness : found.changepoint;
   return {{"demonstration", found.demonstration},
+          {"source", found.source},
           {"index", one.index},
           {"time_s", number(one.time_s)},
           {"fraction", number(one.fraction)},
@@ -152,9 +169,17 @@ void say_groups(const Console& console, const Analysis& found) {
 }
 
 Json parameters_json(const AnalyzeOptions& options) {
-  return {{"alpha", options.alpha},       {"beta", options.beta},         {"transition", options.transition},
-          {"box_root", options.box_root}, {"group_by", options.group_by}, {"order", options.order},
-          {"space", options.space},       {"phase", options.phase},       {"input", options.input}};
+  return {{"alpha", options.alpha},
+          {"beta", options.beta},
+          {"transition", options.transition.empty() ? "likeness" : options.transition},
+          {"box_root", options.box_root},
+          {"group_by", options.group_by},
+          {"order", options.order},
+          {"resolution", options.resolution},
+          {"min_window", options.min_window},
+          {"space", options.space},
+          {"phase", options.phase},
+          {"input", options.input}};
 }
 
 }  // namespace

@@ -98,8 +98,14 @@ void declare_analyze(CLI::App& app, AnalyzeOptions& options) {
   app.add_option("--beta", options.beta, "Share of variance left out by keeping k synergies")
       ->check(fraction)
       ->capture_default_str();
-  app.add_option("--transition", options.transition, "Rule for the end of the pre-grasp phase")
-      ->check(CLI::IsMember({"likeness", "changepoint"}))
+  app.add_option("--transition", options.transition, "Rule for the end of the pre-grasp phase; default: likeness")
+      ->check(CLI::IsMember({"likeness", "changepoint"}));
+  app.add_option("--resolution", options.resolution, "Of the sensors, rad: below it nothing moves")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  app.add_option("--min-window", options.min_window,
+                 "Samples on each side of a transition; 0: as many as joints that move + 1")
+      ->check(CLI::Range(0, 1000000))
       ->capture_default_str();
   app.add_option("--box-root", options.box_root, "Root of 1 - alpha that sizes the box")
       ->check(CLI::IsMember({"n", "k", "literal"}))

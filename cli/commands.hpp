@@ -46,7 +46,9 @@ struct AnalyzeOptions {
   Common common{};
   double alpha = 0.05;
   double beta = 0.05;
-  std::string transition = "likeness";
+  std::string transition{};    ///< likeness | changepoint; empty: likeness
+  double resolution = 0.0087;  ///< rad, of the sensors
+  int min_window = 0;          ///< samples; 0: effective dof + 1
   std::string box_root = "n";
   std::string group_by = "family";
   int order = 0;

@@ -47,9 +47,11 @@ Json comparison_json(const analysis::SynergyComparison& one) {
 
 std::string comparison_line(const analysis::SynergyComparison& one) {
   char text[200];
-  std::snprintf(text, sizeof text, "%-14s %3d %3d  %8.3f  %5.1f %%  %5.1f %%  %13.3f ", one.group.c_str(), one.k_a,
-                one.k_b, one.distance, 100.0 * one.shared_a, 100.0 * one.shared_b, one.bhattacharyya);
+  std::snprintf(text, sizeof text, "%-14s %3d %3d  %8.3f  %5.1f %%  %5.1f %%", one.group.c_str(), one.k_a, one.k_b,
+                one.distance, 100.0 * one.shared_a, 100.0 * one.shared_b);
   std::string line = text;
+  std::snprintf(text, sizeof text, "  %13.3f ", one.bhattacharyya.value_or(0.0));
+  line += one.bhattacharyya ? text : "              - ";
   for (const double angle : one.angles) {
     std::snprintf(text, sizeof text, " %.0f", 180.0 / std::numbers::pi * angle);
     line += text;

@@ -24,6 +24,12 @@ void catch_interrupts() {
   }
 }
 
+std::string joined(const std::vector<std::string>& names) {
+  std::string list;
+  for (const auto& name : names) list += (list.empty() ? "" : ", ") + name;
+  return list;
+}
+
 void Console::say(const std::string& line) const {
   if (!json_ && !quiet_) std::printf("%s\n", line.c_str());
 }

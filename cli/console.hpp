@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace opponens::cli {
 
@@ -19,6 +20,9 @@ class Interrupted : public std::runtime_error {
 /// Set by SIGINT and SIGTERM.
 extern std::atomic<bool> interrupt_requested;
 void catch_interrupts();
+
+/// With commas between.
+std::string joined(const std::vector<std::string>& names);
 
 /// What a command says to a person: sentences on stdout, or one JSON document there (--json) and nothing else.
 class Console {

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "cli/commands.hpp"
+#include "cli/console.hpp"
 #include "cli/json.hpp"
 #include "cli/resources.hpp"
 #include "cli/stored.hpp"
@@ -55,12 +56,6 @@ std::vector<std::string> dropped_channels(const storage::Summary& summary, const
     if (!there) dropped.push_back(channel.joint);
   }
   return dropped;
-}
-
-std::string joined(const std::vector<std::string>& names) {
-  std::string list;
-  for (const auto& name : names) list += (list.empty() ? "" : ", ") + name;
-  return list;
 }
 
 void say_channels(const Console& console, const storage::Summary& summary) {

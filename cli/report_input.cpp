@@ -14,6 +14,7 @@
 #include "cli/resources.hpp"
 #include "cli/stored.hpp"
 #include "cli/world.hpp"
+#include "core/require.hpp"
 #include "storage/codec.hpp"
 
 namespace opponens::cli {
@@ -114,7 +115,6 @@ SynergyPart synergy_part(const Stored<SynergySet>& synergies, const Json& found)
   part.joint_names = synergies.value.joint_names;
   part.grouped_by = parameters.at("group_by");
   part.box_root = parameters.at("box_root");
-  part.cluster = found.at("groups").at(0).at("cluster");
   std::vector<SynergyGroup> groups = {synergies.value.pre_grasp};
   groups.insert(groups.end(), synergies.value.grasp.begin(), synergies.value.grasp.end());
   for (std::size_t i = 0; i < groups.size(); ++i) {
@@ -122,6 +122,7 @@ SynergyPart synergy_part(const Stored<SynergySet>& synergies, const Json& found)
     SynergyItem item;
     item.group = groups[i];
     item.samples = json.at("samples");
+    item.cluster = json.at("cluster");
     const Json& intervals = json.at("cumulative_variance_interval");
     item.cumulative_low.resize(static_cast<Eigen::Index>(intervals.size()));
     item.cumulative_high.resize(item.cumulative_low.size());
@@ -210,23 +211,38 @@ void add_world_and_results(const storage::Store& store, const std::string& syner
   input.provenance = chain_of(store, input.path && !input.path->id.empty() ? input.path->id : newest_grasp);
 }
 
+/// The motions that a synergy set was made from, whatever the store holds beside them.
+std::vector<Stored<Demonstration>> analysed_motions(const storage::Store& store, const storage::Record& synergies) {
+  std::vector<Stored<Demonstration>> motions;
+  for (const auto& id : synergies.provenance.inputs) {
+    storage::Record record = store.read(id);
+    if (record.kind != kRecording && record.kind != kHandMotion) continue;
+    Demonstration value = storage::decode_demonstration(record);
+    motions.push_back({id, std::move(record), std::move(value)});
+  }
+  if (motions.empty()) throw InputError("the newest synergy set names no recordings that it was made from");
+  return motions;
+}
+
 }  // namespace
 
 ReportInput report_input(const storage::Store& store) {
   ReportInput input;
   input.program_version = OPPONENS_VERSION;
   input.run = run_part(store);
-  auto motions = hand_motions(store).newest;
-  if (motions.empty()) motions = recordings(store).newest;
   if (store.list(kSynergySet).empty()) {
+    auto motions = hand_motions(store).newest;
+    if (motions.empty()) motions = recordings(store).newest;
     if (!motions.empty()) input.demonstrations = demonstration_part(motions, "family");
     return input;
   }
   const auto synergies = newest_synergies(store);
+  const auto motions = analysed_motions(store, synergies.record);
   const Json parameters = parameters_of(synergies.record);
   const Json found = Json::parse(text_field(synergies.record, "analysis"));
   input.demonstrations = demonstration_part(motions, parameters.at("group_by"));
-  input.transitions = transition_part(motions, found, parameters.at("transition"));
+  const bool split = parameters.value("phase", "both") != "none";
+  input.transitions = transition_part(motions, found, split ? parameters.at("transition") : Json(""));
   input.synergies = synergy_part(synergies, found);
   input.provenance = chain_of(store, synergies.id);
   add_world_and_results(store, synergies.id, input);

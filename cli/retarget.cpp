@@ -6,9 +6,10 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <thread>
+#include <future>
 
 #include "cli/commands.hpp"
+#include "cli/glove_calibration.hpp"
 #include "cli/json.hpp"
 #include "cli/resources.hpp"
 #include "cli/retarget_totals.hpp"
@@ -18,6 +19,7 @@
 #include "robot/load_robot.hpp"
 #include "robot/retarget.hpp"
 #include "storage/codec.hpp"
+#include "storage/readers/source.hpp"
 
 namespace opponens::cli {
 namespace {
@@ -26,59 +28,9 @@ constexpr const char* kHumanHand = "models/human_hand/human_hand.yaml";
 constexpr double kShortestHand = 0.1;  ///< m, of a wearer
 constexpr double kLongestHand = 0.3;   ///< m
 
-std::string label(const Demonstration& motion, const std::string& name) {
-  const auto found = motion.labels.find(name);
-  return found == motion.labels.end() ? std::string() : found->second;
-}
-
-/// Recordings with an unknown zero are calibrated together: those of one source and one value of the label that the
-/// source calibrates by ("range by subject"). Empty: the channels are calibrated already.
-std::string calibration_cluster(const Demonstration& motion) {
-  const std::string rule = label(motion, "calibration");
-  constexpr std::string_view prefix = "range by ";
-  if (!rule.starts_with(prefix)) return {};
-  return label(motion, "source") + "/" + label(motion, rule.substr(prefix.size()));
-}
-
-robot::ChannelCalibration identity(const std::vector<std::string>& channels) {
-  const auto n = static_cast<Eigen::Index>(channels.size());
-  return {channels, Eigen::VectorXd::Ones(n), Eigen::VectorXd::Zero(n)};
-}
-
-/// How the channels of one cluster are calibrated, and from which recordings.
-struct Calibration {
-  robot::ChannelCalibration channels;
-  std::vector<std::string> recordings;  ///< ids
-};
-using Calibrations = std::map<std::string, Calibration>;
-
-Calibrations calibrate(const std::vector<Stored<Demonstration>>& motions, const robot::RobotModel& human) {
-  std::map<std::string, std::vector<const Demonstration*>> clusters;
-  Calibrations result;
-  for (const auto& motion : motions) {
-    const auto cluster = calibration_cluster(motion.value);
-    if (cluster.empty()) continue;
-    clusters[cluster].push_back(&motion.value);
-    result[cluster].recordings.push_back(motion.id);
-  }
-  for (const auto& [cluster, members] : clusters) {
-    result.at(cluster).channels = robot::calibrate_range(members, human, {});
-  }
-  return result;
-}
-
-/// What a mapped motion is made from: its recording first, then the others that its calibration rests on.
-std::vector<std::string> inputs_of(const std::string& recording, const Calibration& calibration) {
-  std::vector<std::string> inputs = {recording};
-  for (const auto& other : calibration.recordings) {
-    if (other != recording) inputs.push_back(other);
-  }
-  return inputs;
-}
-
 /// Length of the wearer's hand, m, where the label hand_length or the option tells it.
 std::optional<double> told_length(const Demonstration& motion, const RetargetOptions& options) {
-  const std::string text = label(motion, "hand_length");
+  const std::string text = label_of(motion, "hand_length");
   if (text.empty()) return options.hand_length;
   double length = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), length);
@@ -130,15 +82,16 @@ Task make_task(const RetargetOptions& options, const std::vector<Stored<Demonstr
   return task;
 }
 
-Calibration calibration_of(const Demonstration& motion, const Task& task) {
-  const auto cluster = calibration_cluster(motion);
-  return cluster.empty() ? Calibration{identity(motion.joint_names), {}} : task.calibrations.at(cluster);
+robot::RetargetSettings settings_of(const Demonstration& motion, const Task& task) {
+  robot::RetargetSettings settings = task.settings;
+  settings.postures = label_of(motion, "kind") == storage::kPostures;
+  return settings;
 }
 
 /// Maps every recording on the given number of threads; recordings that an interrupt left out are empty. The results do
 /// not depend on the number of threads.
-std::vector<std::optional<robot::Retargeted>> map_all(const std::vector<Stored<Demonstration>>& motions,
-                                                      const Task& task, int threads, const Console& console) {
+std::vector<std::optional<Result<robot::Retargeted>>> map_all(const std::vector<Stored<Demonstration>>& motions,
+                                                              const Task& task, int threads, const Console& console) {
   std::vector<std::optional<Result<robot::Retargeted>>> mapped(motions.size());
   std::map<double, robot::RobotModel> humans;  // by hand length
   for (const auto& motion : motions) {
@@ -152,25 +105,18 @@ std::vector<std::optional<robot::Retargeted>> map_all(const std::vector<Stored<D
     for (std::size_t i = next++; i < motions.size() && !interrupt_requested; i = next++) {
       const Demonstration& motion = motions[i].value;
       const double length = told_length(motion, task.options).value_or(robot::kHumanHandLength);
-      mapped[i] = robot::retarget(motion, calibration_of(motion, task).channels, humans.at(length), task.hand,
-                                  task.mapping, task.settings);
+      mapped[i] = robot::retarget(motion, calibration_of(motion, task.calibrations).channels, humans.at(length),
+                                  task.hand, task.mapping, settings_of(motion, task));
       if (tells && !interrupt_requested) {
         progress.update(static_cast<std::int64_t>(i) + 1, static_cast<std::int64_t>(motions.size()));
       }
     }
   };
-  {
-    std::vector<std::jthread> workers;
-    for (int t = 1; t < threads; ++t) workers.emplace_back(work, false);
-    work(true);
-  }
-  std::vector<std::optional<robot::Retargeted>> results(motions.size());
-  for (std::size_t i = 0; i < motions.size(); ++i) {
-    if (!mapped[i]) continue;
-    if (!*mapped[i]) throw InputError(motions[i].value.id + ": " + mapped[i]->error().detail);
-    results[i] = std::move(**mapped[i]);
-  }
-  return results;
+  std::vector<std::future<void>> others;
+  for (int t = 1; t < threads; ++t) others.push_back(std::async(std::launch::async, work, false));
+  work(true);
+  for (auto& other : others) other.get();  // rethrows here
+  return mapped;
 }
 
 storage::Record motion_record(const robot::Retargeted& mapped, const storage::Provenance& origin) {
@@ -217,6 +163,45 @@ storage::Provenance origin_of(const Task& task) {
   return provenance("retarget", {}, files, parameters, 0);
 }
 
+/// What came of all recordings.
+struct Outcome {
+  std::vector<storage::Record> records{};
+  RetargetTotals totals{};
+  Json skipped = Json::array();  ///< [{id, reason}]
+};
+
+Outcome collect(const std::vector<Stored<Demonstration>>& motions,
+                const std::vector<std::optional<Result<robot::Retargeted>>>& mapped, const Task& task) {
+  Outcome outcome;
+  const storage::Provenance common = origin_of(task);
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    if (!mapped[i]) continue;
+    if (!*mapped[i]) {
+      outcome.skipped.push_back({{"id", motions[i].id}, {"reason", mapped[i]->error().detail}});
+      continue;
+    }
+    const Demonstration& motion = motions[i].value;
+    storage::Provenance origin = common;
+    origin.inputs = inputs_of(motions[i].id, calibration_of(motion, task.calibrations));
+    if (task.settings.alignment) {
+      Json parameters = Json::parse(origin.parameters);
+      parameters["hand_length_m"] = told_length(motion, task.options).value_or(robot::kHumanHandLength);
+      origin.parameters = parameters.dump();
+    }
+    outcome.records.push_back(motion_record(**mapped[i], origin));
+    outcome.totals.add(**mapped[i]);
+  }
+  return outcome;
+}
+
+/// Throws InputError when nothing could be mapped.
+void warn_skipped(const Outcome& outcome) {
+  if (outcome.skipped.empty()) return;
+  const std::string first = outcome.skipped.front().at("reason").get<std::string>();
+  if (outcome.records.empty()) throw InputError("no recording could be mapped; the first: " + first);
+  for (const Json& one : outcome.skipped) Console::warn("skipped: " + one.at("reason").get<std::string>());
+}
+
 }  // namespace
 
 int retarget(const RetargetOptions& options, const Console& console) {
@@ -228,34 +213,22 @@ int retarget(const RetargetOptions& options, const Console& console) {
     throw InputError(store.directory().string() + ": no recordings; run: opponens simulate, or ingest");
   say_superseded(console, superseded);
   const Task task = make_task(options, motions);
-  const storage::Provenance common = origin_of(task);
-  const auto mapped = map_all(motions, task, threads, console);
-
-  std::vector<storage::Record> records;
-  RetargetTotals totals;
-  for (std::size_t i = 0; i < motions.size(); ++i) {
-    if (!mapped[i]) continue;
-    storage::Provenance origin = common;
-    origin.inputs = inputs_of(motions[i].id, calibration_of(motions[i].value, task));
-    if (task.settings.alignment) {
-      Json parameters = Json::parse(origin.parameters);
-      parameters["hand_length_m"] = told_length(motions[i].value, options).value_or(robot::kHumanHandLength);
-      origin.parameters = parameters.dump();
-    }
-    records.push_back(motion_record(*mapped[i], origin));
-    totals.add(*mapped[i]);
-  }
-  const auto ids = store.commit(records);
+  const Outcome outcome = collect(motions, map_all(motions, task, threads, console), task);
+  if (!interrupt_requested) warn_skipped(outcome);
+  const auto ids = store.commit(outcome.records);
   log.finish(ids);
   if (interrupt_requested) throw Interrupted();
   console.say("mapped " + std::to_string(ids.size()) + " recordings to " + task.hand.description().name +
               ", --mapping " + options.mapping);
   say_hand_lengths(motions, task, console);
-  totals.say(console);
+  say_still(task.calibrations, console);
+  outcome.totals.say(console);
   Json result = document("retarget");
-  result.update(totals.json());
-  result.update({{"mapping", options.mapping}, {"alignment", alignment_json(task)}});
+  result.update(outcome.totals.json());
+  result.update(
+      {{"mapping", options.mapping}, {"alignment", alignment_json(task)}, {"still", still_json(task.calibrations)}});
   result["ids"] = ids;
+  result["skipped"] = outcome.skipped;
   console.document(result.dump());
   return kDone;
 }

@@ -32,6 +32,7 @@ void RetargetTotals::add(const robot::Retargeted& mapped) {
   clamped_samples += mapped.clamped_samples;
   samples += count;
   if (!mapped.converged) ++unconverged;
+  for (const std::string& channel : mapped.assumed) ++assumed[channel];
 }
 
 Eigen::VectorXd RetargetTotals::tip_rms() const { return (tip_squares / std::max(1, samples)).cwiseSqrt(); }
@@ -59,6 +60,9 @@ void RetargetTotals::say(const Console& console) const {
   if (unconverged > 0) {
     console.say("in " + std::to_string(unconverged) + " recordings the solver stopped at its iteration limit");
   }
+  for (const auto& [channel, count] : assumed) {
+    console.say(std::to_string(count) + " recordings have no channel " + channel + ": taken to be at rest");
+  }
 }
 
 Json RetargetTotals::json() const {
@@ -74,7 +78,8 @@ Json RetargetTotals::json() const {
           {"clamped_share", by_name(joints, clamped / std::max(1, samples))},
           {"clamped_samples", clamped_samples},
           {"samples", samples},
-          {"unconverged", unconverged}};
+          {"unconverged", unconverged},
+          {"assumed", Json(assumed)}};
 }
 
 }  // namespace opponens::cli

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,8 @@ struct RetargetTotals {
   double largest = 0.0;           ///< m
   int clamped_samples = 0;
   int samples = 0;
-  int unconverged = 0;  ///< recordings
+  int unconverged = 0;                   ///< recordings
+  std::map<std::string, int> assumed{};  ///< recordings without the channel, which was taken to be at rest
 
   void add(const robot::Retargeted& mapped);
   Eigen::VectorXd tip_rms() const;

@@ -106,10 +106,10 @@ Eigen::VectorXd by_name(const robot::RobotModel& model, const std::vector<std::s
   Eigen::VectorXd q = base;
   for (std::size_t i = 0; i < names.size(); ++i) {
     const auto found = std::find(model.joint_names().begin(), model.joint_names().end(), names[i]);
-    if (found != model.joint_names().end())
-      q[found - model.joint_names().begin()] = values[static_cast<Eigen::Index>(i)];
+    require(found != model.joint_names().end(), [&] { return "the robot has no joint '" + names[i] + "'"; });
+    q[found - model.joint_names().begin()] = values[static_cast<Eigen::Index>(i)];
   }
-  return model.clip(q);
+  return q;
 }
 
 Eigen::VectorXd rest_configuration(const robot::RobotModel& model) {

@@ -34,8 +34,8 @@ void append_robot(std::vector<Facet>& out, const robot::RobotModel& model, const
 /// All corners of facets: what a view has to show.
 std::vector<Eigen::Vector3d> corners_of(const std::vector<Facet>& facets);
 
-/// A configuration of the model from values given by joint name: a name that the model lacks is ignored, a joint
-/// without a value keeps base's. Clipped to the joint limits. base: [d] rad.
+/// A configuration of the model from values given by joint name: a joint without a value keeps base's. Not clipped to
+/// the joint limits. Throws std::invalid_argument for a name that the model lacks. base: [d] rad.
 Eigen::VectorXd by_name(const robot::RobotModel& model, const std::vector<std::string>& names,
                         const Eigen::VectorXd& values, const Eigen::VectorXd& base);
 

@@ -70,7 +70,7 @@ struct TransitionFractions {
 };
 
 struct TransitionPart {
-  std::string method;  ///< the rule in force: "likeness" or "changepoint"
+  std::string method;  ///< the rule in force: "likeness" or "changepoint"; empty: no split was made
   std::optional<TransitionCurves> example;
   std::vector<TransitionCurves> others;  ///< drawn after the example
   std::string chosen_by;                 ///< a sentence: by which rule these recordings were chosen
@@ -81,14 +81,16 @@ struct TransitionPart {
 struct Coverage {
   double nominal = 0.95;
   double in_sample = 0.0;
-  std::optional<double> held_out;    ///< one cluster left out at a time
-  std::optional<Interval> interval;  ///< of held_out (of in_sample when there is no held_out)
+  std::optional<double> held_out;  ///< one cluster left out at a time
+  std::optional<Interval>
+      interval;  ///< of held_out (of in_sample when there is no held_out); nullopt: too few clusters
 };
 
 struct SynergyItem {
   SynergyGroup group;
   int samples = 0;
-  Eigen::VectorXd cumulative_low;       ///< [n] fraction, interval of the cumulative variance; empty: none
+  std::string cluster;                  ///< what is left out and resampled: "subject" or "recording"
+  Eigen::VectorXd cumulative_low;       ///< [n] fraction, interval of the cumulative variance; empty: too few clusters
   Eigen::VectorXd cumulative_high;      ///< [n]
   std::optional<Coverage> full_box;     ///< of the n-box
   std::optional<Coverage> reduced_box;  ///< of the first k coordinates
@@ -98,7 +100,6 @@ struct SynergyPart {
   std::vector<std::string> joint_names;  ///< [n]
   std::string grouped_by;                ///< Table 1 is compared only when this is "family"
   std::string box_root;                  ///< "n", "k" or "literal"
-  std::string cluster;                   ///< what is left out and resampled: "subject" or "recording"
   double interval_level = 0.95;          ///< of all intervals
   std::vector<SynergyItem> groups;       ///< pre-grasp first
 };

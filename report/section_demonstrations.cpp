@@ -212,8 +212,9 @@ Markup transition_section(const ReportInput& input) {
        "that depends on the grasp. The paper puts the transition where the distributions before and after are least "
        "alike. Known weakness: on simulated movements the likeness minimum can lie well off the true change, or have "
        "two "
-       "candidates; the change-point rule is shown beside it. In force here: ",
-       part.method, "."}));
+       "candidates; the change-point rule is shown beside it. ",
+       part.method.empty() ? "No split was made here (--phase none): every group holds its whole recordings."
+                           : concat({"In force here: ", part.method, "."})}));
   if (!part.chosen_by.empty()) out += note(part.chosen_by);
   if (part.example) out += example_curves(*part.example);
   for (const TransitionCurves& curves : part.others) out += example_curves(curves);

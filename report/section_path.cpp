@@ -193,13 +193,13 @@ Markup snapshot_rows(const ReportInput& input) {
   std::vector<Eigen::VectorXd> all;
   const Eigen::VectorXd rest = rest_configuration(robot);
   for (Eigen::Index i = 0; i < part.path.waypoints.rows(); ++i) {
-    all.push_back(by_name(robot, part.path.joint_names, part.path.waypoints.row(i).transpose(), rest));
+    all.push_back(robot.clip(by_name(robot, part.path.joint_names, part.path.waypoints.row(i).transpose(), rest)));
   }
   const auto shots = snapshots(part);
   std::vector<Eigen::VectorXd> shown;
   shown.reserve(shots.size());
   for (const auto& shot : shots) {
-    shown.push_back(by_name(robot, part.path.joint_names, at_place(part.path.waypoints, shot.place), rest));
+    shown.push_back(robot.clip(by_name(robot, part.path.joint_names, at_place(part.path.waypoints, shot.place), rest)));
   }
   const auto trail = palm_trail(robot, scene, all);
   const DrawnScene drawn = drawn_scene(robot, scene, object, 5000);

@@ -15,6 +15,8 @@
 namespace opponens::report {
 namespace {
 
+constexpr const char* kNoInterval = "no interval: too few clusters";
+
 /// Percent of the variance in the first i + 1 synergies.
 Eigen::VectorXd cumulative_percent(const Eigen::VectorXd& variance) {
   Eigen::VectorXd sum(variance.size());
@@ -63,6 +65,8 @@ Markup variance_plot(const SynergyPart& part, const SynergyItem& item, int color
   if (item.cumulative_low.size() > 0) {
     ours.band = Band{100.0 * item.cumulative_low, 100.0 * item.cumulative_high};
     ours.label += concat({" (band: ", percent(part.interval_level, 0), " interval)"});
+  } else {
+    ours.label += concat({" (", kNoInterval, ")"});
   }
   plot.series.push_back(ours);
   const bool compared = part.grouped_by == "family";
@@ -88,10 +92,9 @@ Markup variance_plot(const SynergyPart& part, const SynergyItem& item, int color
 std::string coverage_words(const Coverage& coverage) {
   std::string words =
       concat({percent(coverage.in_sample), " / ", coverage.held_out ? percent(*coverage.held_out) : "n/a"});
-  if (coverage.interval) {
-    words +=
-        concat({" [", fixed(100.0 * coverage.interval->low, 1), ", ", fixed(100.0 * coverage.interval->high, 1), "]"});
-  }
+  words += coverage.interval ? concat({" [", fixed(100.0 * coverage.interval->low, 1), ", ",
+                                       fixed(100.0 * coverage.interval->high, 1), "]"})
+                             : concat({" [", kNoInterval, "]"});
   return words + concat({" of ", percent(coverage.nominal)});
 }
 
@@ -118,11 +121,12 @@ Markup number_table(const SynergyPart& part) {
 
 Markup coverage_table(const SynergyPart& part) {
   Table table(concat({"Share of the samples inside the box: in-sample / held out [", percent(part.interval_level, 0),
-                      " interval] of nominal. Held out: one ", part.cluster, " left out at a time."}),
-              {"group", "full box (all effective axes)", "first k coordinates"});
+                      " interval] of nominal. Held out: one cluster of the group left out at a time."}),
+              {"group", "cluster", "full box (all effective axes)", "first k coordinates"});
   for (const auto& item : part.groups) {
     if (!item.full_box && !item.reduced_box) continue;
-    table.row({text(item.group.name), text(item.full_box ? coverage_words(*item.full_box) : std::string()),
+    table.row({text(item.group.name), text(item.cluster),
+               text(item.full_box ? coverage_words(*item.full_box) : std::string()),
                text(item.reduced_box ? coverage_words(*item.reduced_box) : std::string())});
   }
   return table.empty() ? Markup{} : table.str();
@@ -139,7 +143,8 @@ Series dots(const std::string& label, const std::vector<std::pair<double, double
   return series;
 }
 
-/// Coverage of one kind of box per group: dots in-sample and held out, the interval as a bar, the nominal as a line.
+/// Coverage of one kind of box per group: dots in-sample and held out, the interval as a bar, the nominal as a line
+/// across the group's place.
 Markup coverage_plot(const SynergyPart& part, std::optional<Coverage> SynergyItem::*box, const std::string& what) {
   LinePlot plot;
   plot.title = concat({"Coverage of ", what});
@@ -150,13 +155,20 @@ Markup coverage_plot(const SynergyPart& part, std::optional<Coverage> SynergyIte
   std::vector<std::pair<double, double>> inside;
   std::vector<std::pair<double, double>> outside;
   std::string names;
-  double nominal = 0.0;
   for (std::size_t i = 0; i < part.groups.size(); ++i) {
     const auto& coverage = part.groups[i].*box;
-    names += concat({i == 0 ? "" : ", ", std::to_string(i + 1), ": ", part.groups[i].group.name});
+    const auto& group = part.groups[i].group;
+    names += concat({i == 0 ? "" : ", ", std::to_string(i + 1), ": ",
+                     group.phase == "grasp" ? concat({part.grouped_by, " "}) : std::string(), group.name});
     if (!coverage) continue;
     const double x = static_cast<double>(i) + 1.0;
-    nominal = coverage->nominal;
+    Series nominal{inside.empty() ? "nominal" : "",
+                   Eigen::Vector2d(x - 0.3, x + 0.3),
+                   Eigen::Vector2d::Constant(100.0 * coverage->nominal),
+                   "var(--soft)",
+                   {}};
+    nominal.dashed = true;
+    plot.series.push_back(nominal);
     inside.emplace_back(x - 0.1, 100.0 * coverage->in_sample);
     if (coverage->held_out) outside.emplace_back(x + 0.1, 100.0 * *coverage->held_out);
     if (!coverage->interval) continue;
@@ -173,7 +185,6 @@ Markup coverage_plot(const SynergyPart& part, std::optional<Coverage> SynergyIte
   if (!outside.empty()) {
     plot.series.push_back(dots(concat({"held out (bar: ", percent(part.interval_level, 0), " interval)"}), outside, 1));
   }
-  plot.marks.push_back({concat({"nominal, ", percent(nominal, 0)}), 100.0 * nominal, "var(--soft)", true, true});
   return figure(render(plot), concat({"Coverage of ", what, ". ", names, "."}));
 }
 

@@ -2,117 +2,42 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/fingertip_fit.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include <ceres/ceres.h>
 
+#include "robot/tip_residuals.hpp"
+
 namespace opponens::robot {
 
 namespace {
 
-constexpr double kCentimetres = 100.0;  ///< residuals are in cm, so that weights in rad compare with them
 constexpr int kIterationsPerRound = 3;  ///< of the active set
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Residuals whose squares sum to |p - p*|^2, for tip p and target p*, and their derivative along a motion of p. Where
-/// the target is far out of reach, Gauss-Newton on p - p* itself overshoots: the circle that the tip runs on bends
-/// towards the target. In cylinder coordinates about the axis of the first fitted joint,
-///   |p - p*|^2 = (r - r*)^2 + (z - z*)^2 + 4 r r* sin^2((phi - phi*) / 2),
-/// only the last term changes with that joint, and it can vanish.
-class TipError {
- public:
-  TipError(const Eigen::Vector3d& p, const Eigen::Vector3d& target) : plain_(p - target) {}
-  TipError(const Eigen::Vector3d& p, const Eigen::Vector3d& target, const Eigen::Vector3d& origin,
-           const Eigen::Vector3d& axis)
-      : axis_(axis), plain_(p - target) {
-    const Eigen::Vector3d flat = p - origin - axis.dot(p - origin) * axis;
-    const Eigen::Vector3d flat_target = target - origin - axis.dot(target - origin) * axis;
-    const double r = flat.norm();
-    const double r_target = flat_target.norm();
-    cylindrical_ = r > kOnAxis && r_target > kOnAxis;
-    if (!cylindrical_) return;
-    along_ = flat / r;
-    const double half = 0.5 * std::atan2(axis.dot(flat_target.cross(flat)), flat_target.dot(flat));  // (phi - phi*) / 2
-    const double root = std::sqrt(r_target / r);
-    residual_ = {r - r_target, axis.dot(p - target), 2.0 * root * r * std::sin(half)};
-    slope_ = root * (std::sin(half) * along_ + std::cos(half) * axis.cross(along_));
-  }
-
-  Eigen::Vector3d residual() const { return cylindrical_ ? residual_ : plain_; }
-  Eigen::Vector3d derivative(const Eigen::Vector3d& dp) const {
-    return cylindrical_ ? Eigen::Vector3d(along_.dot(dp), axis_.dot(dp), slope_.dot(dp)) : dp;
-  }
-
- private:
-  static constexpr double kOnAxis = 1e-6;  ///< m: there the plain difference, of the same square, is used
-  Eigen::Vector3d axis_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d plain_;
-  bool cylindrical_ = false;
-  Eigen::Vector3d along_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d residual_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d slope_ = Eigen::Vector3d::Zero();
-};
-
-/// 100 w TipError of all tips in one sample, x the fitted joints; Jacobian by RobotModel::point_jacobian. A second
-/// block, where there is one, shifts the targets.
+/// TipResiduals of one sample; x the fitted joints. A second block, where there is one, shifts the targets.
 class TipCost : public ceres::CostFunction {
  public:
-  TipCost(const RobotModel& hand, const FingertipFit& fit, Eigen::VectorXd q, Eigen::Index sample, double weight)
-      : hand_(hand), fit_(fit), q_(std::move(q)), sample_(sample), weight_(kCentimetres * weight) {
+  TipCost(TipResiduals residuals, const FingertipFit& fit) : residuals_(std::move(residuals)) {
     mutable_parameter_block_sizes()->push_back(static_cast<int>(fit.fitted.size()));
     if (fit.shifted) mutable_parameter_block_sizes()->push_back(3);
     set_num_residuals(3 * static_cast<int>(fit.targets.size()));
   }
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    const auto size = static_cast<Eigen::Index>(fit_.fitted.size());
-    for (Eigen::Index i = 0; i < size; ++i) q_[fit_.fitted[static_cast<std::size_t>(i)]] = parameters[0][i];
-    const Eigen::Vector3d shift =
-        fit_.shifted ? Eigen::Vector3d(parameters[1][0], parameters[1][1], parameters[1][2]) : Eigen::Vector3d::Zero();
-    hand_.link_poses(q_, X_RL_);
-    const Eigen::Isometry3d X_PR = X_RL_[static_cast<std::size_t>(hand_.palm())].inverse();
-    const bool wants_jacobian = jacobians && jacobians[0];
-    for (std::size_t f = 0; f < fit_.targets.size(); ++f) {
-      const TipTarget& target = fit_.targets[f];
-      const Eigen::Vector3d p_R = X_RL_[static_cast<std::size_t>(target.finger.link)] * target.finger.p_L;
-      const TipError error = tip_error(target, X_PR, X_PR * p_R - shift);
-      Eigen::Map<Eigen::Vector3d> rows(residuals + 3 * f);
-      rows = weight_ * error.residual();
-      if (!wants_jacobian) continue;
-      const Eigen::Matrix3Xd J_R = hand_.point_jacobian(X_RL_, target.finger.link, p_R);
-      Eigen::Map<RowMajor> J(jacobians[0] + 3 * f * fit_.fitted.size(), 3, size);
-      for (Eigen::Index i = 0; i < size; ++i) {
-        const Eigen::Vector3d dp = X_PR.linear() * J_R.col(fit_.fitted[static_cast<std::size_t>(i)]);
-        J.col(i) = weight_ * error.derivative(dp);
-      }
-    }
-    if (fit_.shifted && jacobians && jacobians[1]) {
-      for (int i = 0; i < num_residuals(); ++i) {
-        for (int k = 0; k < 3; ++k) jacobians[1][3 * i + k] = i % 3 == k ? -weight_ : 0.0;
-      }
-    }
+    const bool shifted = parameter_block_sizes().size() > 1;
+    residuals_.evaluate(parameters[0], shifted ? parameters[1] : nullptr, residuals,
+                        jacobians ? jacobians[0] : nullptr);
+    if (shifted && jacobians && jacobians[1]) residuals_.shift_jacobian(jacobians[1]);
     return true;
   }
 
  private:
-  TipError tip_error(const TipTarget& target, const Eigen::Isometry3d& X_PR, const Eigen::Vector3d& p) const {
-    const Eigen::Vector3d goal = target.path.col(sample_);
-    if (!fit_.cylindrical || target.joints.empty()) return {p, goal};
-    const FittedJoint& first = target.turning.at(target.joints.front());
-    if (!first.revolute) return {p, goal};
-    const Eigen::Isometry3d X_PC = X_PR * X_RL_[static_cast<std::size_t>(first.link)];
-    return {p, goal, X_PC.translation(), X_PC.linear() * first.axis};
-  }
-
-  const RobotModel& hand_;
-  const FingertipFit& fit_;
-  mutable Eigen::VectorXd q_;  // scratch: one thread evaluates (Solver::Options::num_threads = 1)
-  mutable std::vector<Eigen::Isometry3d> X_RL_;
-  Eigen::Index sample_;
-  double weight_;
+  TipResiduals residuals_;
 };
 
 /// Residuals sum over blocks of factor x block - constant: differences of neighbouring samples, or the deviation of one
@@ -155,6 +80,12 @@ Eigen::VectorXd sample_shares(const Eigen::VectorXd& time, Eigen::Index samples)
   return shares;
 }
 
+/// Whether a step was accepted; the first entry is the start.
+bool moved(const ceres::Solver::Summary& summary) {
+  return std::any_of(summary.iterations.begin() + 1, summary.iterations.end(),
+                     [](const ceres::IterationSummary& iteration) { return iteration.step_is_successful; });
+}
+
 /// The fitted joints of all samples as one Ceres problem with bounds. Ceres clips steps to the bounds but solves for
 /// them as if there were none, which creeps where many samples lie on a bound; so positions that the gradient pushes
 /// out are held there in turn (active set), and the rest is solved.
@@ -177,7 +108,7 @@ class FingertipProblem {
       std::vector<double*> moved = {block};
       if (fit.shifted) moved.push_back(shift_.data());
       // The problem owns its cost functions.
-      problem_.AddResidualBlock(new TipCost(hand, fit, q.col(t), t, weight), nullptr, moved);
+      problem_.AddResidualBlock(new TipCost(TipResiduals(hand, fit, q.col(t), t, weight), fit), nullptr, moved);
       add_difference({block}, {weight * settings.rest}, weight * settings.rest * fit.rest.col(t));
     }
     if (fit.time.size() > 1) add_smoothness(fit.time, settings);
@@ -203,10 +134,12 @@ class FingertipProblem {
       max_iterations -= std::max(1, static_cast<int>(summary.iterations.size()) - 1);
       options_.initial_trust_region_radius = summary.iterations.back().trust_region_radius;
       // Every round starts where the last ended, so the cost never rises; where it does not fall either, positions
-      // only change between held and free at their bounds.
+      // only change between held and free at their bounds. A round of rejected steps tells nothing: the next one has a
+      // smaller trust region.
       const Eigen::MatrixXi next = held_positions();
-      const bool settled = last - summary.final_cost <= options_.function_tolerance * summary.final_cost;
-      if (settled || (next == held && summary.termination_type == ceres::CONVERGENCE)) return true;
+      const bool converged = summary.termination_type == ceres::CONVERGENCE;
+      const bool level = last - summary.final_cost <= options_.function_tolerance * summary.final_cost;
+      if ((level && (converged || moved(summary))) || (next == held && converged)) return true;
       last = summary.final_cost;
       held = next;
     }
@@ -281,12 +214,10 @@ class FingertipProblem {
   ceres::Solver::Options options_;
 };
 
-}  // namespace
-
-Result<FitResult> fit_fingertips(const RobotModel& hand, const FingertipFit& fit, const RetargetSettings& settings,
-                                 Eigen::MatrixXd& q) {
+/// All samples at once.
+Result<FitResult> fit_together(const RobotModel& hand, const FingertipFit& fit, const RetargetSettings& settings,
+                               Eigen::MatrixXd& q) {
   FitResult result;
-  if (fit.fitted.empty() || q.cols() == 0) return result;
   for (const FingertipFit& part : independent_parts(fit)) {
     FingertipProblem problem(hand, part, settings, q);
     const Result<bool> converged = problem.solve(settings.max_iterations);
@@ -294,6 +225,23 @@ Result<FitResult> fit_fingertips(const RobotModel& hand, const FingertipFit& fit
     result.converged = result.converged && *converged;
     result.shift = problem.shift();
     q(part.fitted, Eigen::all) = problem.positions();
+  }
+  return result;
+}
+
+}  // namespace
+
+Result<FitResult> fit_fingertips(const RobotModel& hand, const FingertipFit& fit, const RetargetSettings& settings,
+                                 Eigen::MatrixXd& q) {
+  if (fit.fitted.empty() || q.cols() == 0) return FitResult();
+  if (fit.time.size() > 0 || fit.shifted) return fit_together(hand, fit, settings, q);
+  FitResult result;
+  for (Eigen::Index t = 0; t < q.cols(); ++t) {
+    Eigen::MatrixXd one = q.col(t);
+    const auto fitted = fit_together(hand, sample_of(fit, t), settings, one);
+    if (!fitted) return fitted;
+    result.converged = result.converged && fitted->converged;
+    q.col(t) = one;
   }
   return result;
 }

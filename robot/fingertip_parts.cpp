@@ -58,4 +58,12 @@ std::vector<FingertipFit> independent_parts(const FingertipFit& fit) {
   return parts;
 }
 
+FingertipFit sample_of(const FingertipFit& fit, Eigen::Index sample) {
+  FingertipFit one = fit;
+  one.rest = fit.rest.col(sample);
+  one.time.resize(0);
+  for (std::size_t f = 0; f < fit.targets.size(); ++f) one.targets[f].path = fit.targets[f].path.col(sample);
+  return one;
+}
+
 }  // namespace opponens::robot

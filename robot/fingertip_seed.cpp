@@ -47,7 +47,7 @@ double best_turn(const RobotModel& hand, const std::vector<TipTarget>& targets, 
 void seed_positions(const RobotModel& hand, const FingertipFit& fit, Eigen::MatrixXd& q) {
   std::vector<Eigen::Isometry3d> X_RL;
   for (Eigen::Index t = 0; t < q.cols(); ++t) {
-    if (t > 0) {
+    if (t > 0 && fit.time.size() > 0) {
       for (const int joint : fit.fitted) q(joint, t) = q(joint, t - 1);
     }
     Eigen::VectorXd position = q.col(t);

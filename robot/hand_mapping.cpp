@@ -106,8 +106,7 @@ HandMapping load_hand_mapping(const std::filesystem::path& hand_yaml) {
   return mapping;
 }
 
-ChannelCalibration calibrate_range(const std::vector<const Demonstration*>& recordings, const RobotModel& human,
-                                   const std::map<std::string, double>& channel_sign) {
+ChannelCalibration calibrate_range(const std::vector<const Demonstration*>& recordings, const RobotModel& human) {
   require(!recordings.empty(), "calibrate_range needs at least one recording");
   ChannelCalibration calibration;
   std::vector<std::pair<double, double>> lines;  // gain, offset
@@ -115,18 +114,16 @@ ChannelCalibration calibrate_range(const std::vector<const Demonstration*>& reco
     const std::string& channel = human.joint_names()[static_cast<std::size_t>(i)];
     const std::vector<double> values = sorted_values(recordings, channel);
     if (values.empty()) continue;
-    const auto given = channel_sign.find(channel);
-    const double sign = given == channel_sign.end() ? 1.0 : given->second;
-    require(sign == 1.0 || sign == -1.0, "sign of channel " + channel + " must be 1 or -1");
     const double low = percentile(values, 0.01);
     const double high = percentile(values, 0.99);
     calibration.channels.push_back(channel);
-    if (high - low < 1e-9) {
+    if (high - low < kStillRange) {
+      calibration.still.push_back(channel);
       lines.emplace_back(0.0, std::clamp(0.0, human.lower()[i], human.upper()[i]));
       continue;
     }
-    const double gain = sign * (human.upper()[i] - human.lower()[i]) / (high - low);
-    lines.emplace_back(gain, human.lower()[i] - gain * (sign > 0.0 ? low : high));
+    const double gain = (human.upper()[i] - human.lower()[i]) / (high - low);
+    lines.emplace_back(gain, human.lower()[i] - gain * low);
   }
   const auto count = static_cast<Eigen::Index>(lines.size());
   calibration.gain.resize(count);

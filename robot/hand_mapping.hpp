@@ -27,8 +27,7 @@ struct JointMapping {
 /// How a human hand drives a robot hand (hand.yaml, key "mapping"). Which part a mapping uses: MappingKind.
 struct HandMapping {
   std::vector<JointMapping> copied;  ///< joint to joint in every mapping; recordings must have the channel
-  /// Joint to joint where the joint is not found from fingertips. A recording may lack the channel (gloves without an
-  /// abduction sensor of the middle finger do), which is then where the human hand has it at rest: nearest to zero.
+  /// Joint to joint where the joint is not found from fingertips.
   std::vector<JointMapping> direct;
   std::vector<std::string> fitted;                ///< robot joints that MappingKind::paper finds from fingertips
   std::map<std::string, std::string> fingertips;  ///< robot tip name -> human tip name
@@ -46,14 +45,18 @@ HandMapping load_hand_mapping(const std::filesystem::path& hand_yaml);
 struct ChannelCalibration {
   std::vector<std::string> channels;
   Eigen::VectorXd gain;
-  Eigen::VectorXd offset;  ///< rad
+  Eigen::VectorXd offset;            ///< rad
+  std::vector<std::string> still{};  ///< those of the channels that do not move: gain 0
 };
 
+/// rad: a channel whose observed range is smaller does not move. Three steps of a glove sensor of 0.5 degrees (that of
+/// a CyberGlove), so that flicker by one step either way is not laid on a whole joint range.
+inline constexpr double kStillRange = 0.026;
+
 /// Maps each channel's observed range [1st, 99th percentile over the given recordings of one subject] to the human
-/// hand's joint range; keeps the sign convention of the human hand model (flexion positive). channel_sign: -1 where the
-/// recording counts the other way (absent: +1). Percentiles interpolate between order statistics. A channel that does
-/// not move gets gain 0 and the joint position nearest to zero; channels that the human hand lacks are left out.
-ChannelCalibration calibrate_range(const std::vector<const Demonstration*>& recordings, const RobotModel& human,
-                                   const std::map<std::string, double>& channel_sign);
+/// hand's joint range, lower end on lower end. Percentiles interpolate between order statistics. A channel that does
+/// not move (kStillRange) gets gain 0 and the joint position nearest to zero; channels that the human hand lacks are
+/// left out.
+ChannelCalibration calibrate_range(const std::vector<const Demonstration*>& recordings, const RobotModel& human);
 
 }  // namespace opponens::robot

@@ -47,15 +47,6 @@ Result<Eigen::MatrixXd> human_positions(const Demonstration& recording, const Ch
   return q;
 }
 
-Result<std::monostate> require_channels(const Demonstration& recording, const std::vector<JointMapping>& copies) {
-  for (const JointMapping& copy : copies) {
-    if (index_of(recording.joint_names, copy.channel)) continue;
-    return failure(FailureCode::not_found, "recording '" + recording.id + "' has no channel '" + copy.channel +
-                                               "', which joint '" + copy.joint + "' copies");
-  }
-  return std::monostate();
-}
-
 Result<std::monostate> copy_joints(const RobotModel& human, const Eigen::MatrixXd& q_human, const RobotModel& hand,
                                    const std::vector<JointMapping>& copies, Eigen::MatrixXd& q, BoolMatrix& clamped) {
   for (const JointMapping& copy : copies) {

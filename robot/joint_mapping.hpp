@@ -23,9 +23,6 @@ std::optional<int> index_of(const std::vector<std::string>& names, const std::st
 Result<Eigen::MatrixXd> human_positions(const Demonstration& recording, const ChannelCalibration& calibration,
                                         const RobotModel& human);
 
-/// The channels that a recording must have.
-Result<std::monostate> require_channels(const Demonstration& recording, const std::vector<JointMapping>& copies);
-
 /// Copies human joints into the rows of q [d x T] of the robot hand and marks in clamped [d x T] which samples lay
 /// beyond a limit. Failure: a joint or channel is missing (not_found).
 Result<std::monostate> copy_joints(const RobotModel& human, const Eigen::MatrixXd& q_human, const RobotModel& hand,

@@ -177,6 +177,7 @@ Joint joint_of(const urdf::Joint& source, const std::filesystem::path& file, std
     if (!std::isfinite(joint.mimic->multiplier) || !std::isfinite(joint.mimic->offset)) {
       fail_urdf(file, element + ": mimic is not finite");
     }
+    if (continuous) joint.lower = joint.upper = 0.0;  // none that could restrict the driver
   }
   return joint;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "core/require.hpp"
 #include "robot/joint_mapping.hpp"
@@ -13,6 +14,7 @@ namespace opponens::robot {
 
 namespace {
 
+constexpr const char* kMayBeAbsent = "M_ABD";
 constexpr double kTolerance = 1e-5;  ///< of the cost where all joints of a finger are fitted
 
 /// Both hands, and how the one drives the other.
@@ -74,18 +76,39 @@ Result<FingertipFit> fit_of(const Task& task) {
   return fit;
 }
 
+/// Channels that the recording lacks, though the mapping uses them; see retarget().
+Result<std::vector<std::string>> absent_channels(const Demonstration& recording, const Task& task) {
+  std::set<std::string> required;
+  std::set<std::string> used;
+  for (const JointMapping& copy : task.mapping.copied) required.insert(copy.channel);
+  if (task.settings.mapping != MappingKind::paper) {
+    for (const JointMapping& copy : task.mapping.direct) required.insert(copy.channel);
+  }
+  for (const FingerPair& pair : task.fingers) {
+    for (const int joint : pair.human.moved_by) used.insert(task.human.joint_names()[static_cast<std::size_t>(joint)]);
+  }
+  if (task.settings.mapping != MappingKind::joint) required.insert(used.begin(), used.end());
+  used.insert(required.begin(), required.end());
+  std::vector<std::string> absent;
+  for (const std::string& channel : used) {
+    if (index_of(recording.joint_names, channel)) continue;
+    absent.push_back(channel);
+    if (channel == kMayBeAbsent || !required.contains(channel)) continue;
+    return failure(FailureCode::not_found,
+                   "recording '" + recording.id + "' has no channel '" + channel + "', which this mapping needs");
+  }
+  return absent;
+}
+
 /// Where the joints are before the fit: copied joints at their channels, and so the direct ones but for the paper's
 /// mapping, which has its fitted ones in the middle.
-Result<Eigen::MatrixXd> start_positions(const Demonstration& recording, const Task& task, BoolMatrix& clamped) {
+Result<Eigen::MatrixXd> start_positions(const Task& task, BoolMatrix& clamped) {
   const RobotModel& hand = task.hand;
   const bool paper = task.settings.mapping == MappingKind::paper;
   Eigen::MatrixXd q = hand.clip(Eigen::VectorXd::Zero(hand.dof())).replicate(1, task.q_human.cols());
   clamped = BoolMatrix::Constant(q.rows(), q.cols(), false);
   std::vector<JointMapping> copies = task.mapping.copied;
   if (!paper) copies.insert(copies.end(), task.mapping.direct.begin(), task.mapping.direct.end());
-  if (const auto present = require_channels(recording, task.mapping.copied); !present) {
-    return tl::make_unexpected(present.error());
-  }
   if (const auto copied = copy_joints(task.human, task.q_human, hand, copies, q, clamped); !copied) {
     return tl::make_unexpected(copied.error());
   }
@@ -144,13 +167,15 @@ Result<Retargeted> retarget(const Demonstration& recording, const ChannelCalibra
   auto fingers = mapped_fingers(human, hand, mapping);
   if (!fingers) return tl::make_unexpected(fingers.error());
   task.fingers = std::move(*fingers);
+  const auto absent = absent_channels(recording, task);
+  if (!absent) return tl::make_unexpected(absent.error());
   Result<FingertipFit> fit = fit_of(task);
   if (!fit) return tl::make_unexpected(fit.error());
   BoolMatrix clamped;
-  Result<Eigen::MatrixXd> q = start_positions(recording, task, clamped);
+  Result<Eigen::MatrixXd> q = start_positions(task, clamped);
   if (!q) return tl::make_unexpected(q.error());
 
-  fit->time = recording.time;
+  if (!settings.postures) fit->time = recording.time;
   fit->rest = (*q)(fit->fitted, Eigen::all);
   if (settings.mapping == MappingKind::paper) {
     fit->rest = (0.5 * (hand.lower() + hand.upper()))(fit->fitted).replicate(1, q->cols());
@@ -164,6 +189,7 @@ Result<Retargeted> retarget(const Demonstration& recording, const ChannelCalibra
   mark_limits(hand, fit->fitted, *q, clamped);
 
   Retargeted result;
+  result.assumed = *absent;
   result.converged = fitted->converged;
   result.demonstration = recording;
   result.demonstration.joint_names = hand.hand().joint_names;

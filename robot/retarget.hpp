@@ -48,6 +48,8 @@ struct RetargetSettings {
   double acceleration = 0.0;  ///< cm s^2 / rad
   double rest = 0.02;         ///< cm / rad, of the deviation from the rest posture: decides what tips leave open
   int max_iterations = 50;
+  /// The samples are postures that do not follow each other: each is mapped for itself, without smoothness.
+  bool postures = false;
   std::optional<HandAlignment> alignment{};  ///< of joint and fingertip; absent: align_hands with the given human hand
 };
 
@@ -63,7 +65,9 @@ struct Retargeted {
   double tip_residual_max = 0.0;  ///< m
   Eigen::VectorXd clamped_share;  ///< [n] share of samples in which the joint was held at a limit
   int clamped_samples = 0;        ///< samples in which any joint was
-  bool converged = true;          ///< false: the solver stopped at its iteration limit
+  /// Channels without a recording, taken where the human hand has them at rest (nearest to zero): see retarget().
+  std::vector<std::string> assumed{};
+  bool converged = true;  ///< false: the solver stopped at its iteration limit
 };
 
 /// Maps a recording to the robot hand. A copied joint is held at a limit where its value lies beyond; a fitted one
@@ -80,6 +84,11 @@ struct Retargeted {
 /// - paper: p* = b_r + (l_r / l_h) R (p_h - b_h), p_h the human tip, b the base of the finger it is measured from (the
 ///   last joint origin on the way to the tip that no joint of the finger moves: the knuckle; for a thumb its first
 ///   joint), l that finger's length and R = R_robot_human. A human hand of another size divides out.
+///
+/// A recording must have the channels of the copied joints, for joint and fingertip those of the direct ones, and for
+/// fingertip and paper every channel that moves a mapped human tip; but M_ABD, which many gloves do not measure (theirs
+/// are angles between neighbours, and the middle finger is the one they start from), may be absent. So may, for joint,
+/// channels that only its residuals depend on. The result names them.
 ///
 /// One thread, deterministic. human: the parametric human hand at the wearer's size. Mimic joints follow their drivers,
 /// which are fitted through them. Failure: a channel, joint or tip is missing (not_found), a value is not finite

@@ -111,6 +111,19 @@ void RobotModel::index_joints() {
   }
 }
 
+/// A driven joint's own limits hold too. Equal ones (in a URDF: left out, both 0) state none.
+void RobotModel::restrict_driver(const Joint& joint, const Drive& drive) {
+  if (!joint.mimic || drive.index < 0 || drive.multiplier == 0.0 || !(joint.lower < joint.upper)) return;
+  const double at_lower = (joint.lower - drive.offset) / drive.multiplier;
+  const double at_upper = (joint.upper - drive.offset) / drive.multiplier;
+  lower_[drive.index] = std::max(lower_[drive.index], std::min(at_lower, at_upper));
+  upper_[drive.index] = std::min(upper_[drive.index], std::max(at_lower, at_upper));
+  if (lower_[drive.index] <= upper_[drive.index]) return;
+  throw InputError("robot '" + description_.name + "': no position of joint '" +
+                   joint_names_[static_cast<std::size_t>(drive.index)] + "' keeps '" + joint.name +
+                   "', which mimics it, and all other joints that do inside their limits");
+}
+
 void RobotModel::resolve_drives() {
   std::map<std::string, const Joint*> by_name;
   std::map<std::string, int> actuated;
@@ -131,6 +144,7 @@ void RobotModel::resolve_drives() {
     } else if (source->type != JointType::fixed) {  // not driven: rests at the limit nearest to zero
       drive.offset += drive.multiplier * std::clamp(0.0, source->lower, source->upper);
     }
+    restrict_driver(joint, drive);
     drives_.push_back(drive);
   }
 }

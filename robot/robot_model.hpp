@@ -78,7 +78,8 @@ RobotDescription scaled(const RobotDescription& description, double factor);
 /// is ordered by name as given in the description, never by position in the URDF.
 class RobotModel {
  public:
-  /// Throws std::invalid_argument when the description is inconsistent (order, names, sizes).
+  /// Throws std::invalid_argument when the description is inconsistent (order, names, sizes), InputError when no
+  /// position of a joint keeps those that mimic it inside their limits.
   explicit RobotModel(RobotDescription description);
 
   const RobotDescription& description() const { return description_; }
@@ -87,7 +88,8 @@ class RobotModel {
   int dof() const { return static_cast<int>(joint_names_.size()); }
   const PlanningGroup& arm() const { return arm_; }
   const PlanningGroup& hand() const { return hand_; }
-  const Eigen::VectorXd& lower() const { return lower_; }                  ///< [d]
+  /// [d] of the joints and of those that mimic them.
+  const Eigen::VectorXd& lower() const { return lower_; }
   const Eigen::VectorXd& upper() const { return upper_; }                  ///< [d]
   const Eigen::VectorXd& velocity() const { return velocity_; }            ///< [d]
   const Eigen::VectorXd& weights() const { return description_.weights; }  ///< [d]
@@ -123,6 +125,7 @@ class RobotModel {
 
   void index_joints();
   void resolve_drives();
+  void restrict_driver(const Joint& joint, const Drive& drive);
 
   RobotDescription description_;
   std::vector<std::string> joint_names_;

@@ -82,21 +82,34 @@ void write_store(const Options& options) {
   std::fprintf(stderr, "\n");
 }
 
+bool equal(const analysis::Coverage& a, const analysis::Coverage& b) {
+  return a.in_sample == b.in_sample && a.held_out == b.held_out && a.nominal == b.nominal &&
+         a.interval->low == b.interval->low && a.interval->high == b.interval->high;
+}
+
+bool equal(const analysis::GroupReport& a, const analysis::GroupReport& b) {
+  bool same = a.samples == b.samples && a.k == b.k && a.cumulative_variance == b.cumulative_variance &&
+              equal(a.coverage.full, b.coverage.full) && equal(a.coverage.kept, b.coverage.kept) &&
+              a.intervals.size() == b.intervals.size();
+  for (std::size_t i = 0; same && i < a.intervals.size(); ++i) {
+    same = a.intervals[i].low == b.intervals[i].low && a.intervals[i].high == b.intervals[i].high;
+  }
+  return same;
+}
+
+/// Every number of both: the synergies by the hash that they would be stored under.
 bool equal(const analysis::Analysis& a, const analysis::Analysis& b) {
-  bool same = a.groups.size() == b.groups.size() && a.transitions.size() == b.transitions.size();
-  for (std::size_t i = 0; same && i < a.groups.size(); ++i) {
-    const auto& x = a.groups[i];
-    const auto& y = b.groups[i];
-    same = x.cumulative_variance == y.cumulative_variance && x.samples == y.samples &&
-           x.coverage.full.in_sample == y.coverage.full.in_sample &&
-           x.coverage.kept.held_out == y.coverage.kept.held_out &&
-           x.coverage.full.interval->low == y.coverage.full.interval->low &&
-           x.intervals.front().low == y.intervals.front().low;
-  }
+  bool same = storage::content_hash(storage::encode(a.synergies, {})) ==
+              storage::content_hash(storage::encode(b.synergies, {}));
+  same = same && a.groups.size() == b.groups.size() && a.transitions.size() == b.transitions.size();
+  for (std::size_t i = 0; same && i < a.groups.size(); ++i) same = equal(a.groups[i], b.groups[i]);
   for (std::size_t i = 0; same && i < a.transitions.size(); ++i) {
-    same = a.transitions[i].likeness.index == b.transitions[i].likeness.index;
+    const auto& x = a.transitions[i];
+    const auto& y = b.transitions[i];
+    same = x.likeness.index == y.likeness.index && x.changepoint.index == y.changepoint.index &&
+           x.likeness.time_s == y.likeness.time_s;
   }
-  return same && a.synergies.pre_grasp.basis.axes == b.synergies.pre_grasp.basis.axes;
+  return same;
 }
 
 /// From the store on two threads, and from memory on one: every number must be the same.
@@ -109,9 +122,9 @@ bool check(const Options& options) {
   std::vector<Demonstration> memory;
   for (std::size_t i = 0; i < options.recordings; ++i) memory.push_back(recording(options, i));
   const auto direct = analysis::analyze(memory, {});
-  memory.pop_back();
-  const auto fewer = analysis::analyze(memory, {});
-  return streamed && direct && fewer && equal(*streamed, *direct) && !equal(*streamed, *fewer);
+  memory.back().q_h(0, 0) += 1e-9;  // what the comparison is worth: one sample of all, a little off
+  const auto other = analysis::analyze(memory, {});
+  return streamed && direct && other && equal(*streamed, *direct) && !equal(*streamed, *other);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <malloc.h>
 #include <poll.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -17,6 +18,8 @@
 #include <cstring>
 #include <fstream>
 #include <new>
+#include <optional>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -103,8 +106,15 @@ class Child {
   Child(const std::function<std::string()>& work, const ChildLimits& limits, const fs::path& file) {
     int ends[2];
     if (::pipe2(ends, O_CLOEXEC) != 0) throw_errno("cannot make a pipe for reading", file);
+    const pid_t parent = ::getpid();
     id_ = ::fork();
-    if (id_ == 0) be_child(ends[1], work, limits);
+    if (id_ == 0) {
+      // Nobody is left to read what this process finds when its parent is killed.
+      ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+      if (::getppid() != parent) ::_exit(1);
+      ::close(ends[0]);
+      be_child(ends[1], work, limits);
+    }
     const int error = errno;
     ::close(ends[1]);
     pipe_ = ends[0];
@@ -118,17 +128,22 @@ class Child {
     ::close(pipe_);
     if (id_ > 0) {
       ::kill(id_, SIGKILL);
-      wait();
+      while (::waitpid(id_, nullptr, 0) < 0 && errno == EINTR) {
+      }
     }
   }
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
   int pipe() const { return pipe_; }
-  /// Its end, as waitpid tells it.
-  int wait() {
+  /// Its end, as waitpid tells it; none when it lives on until the deadline.
+  std::optional<int> wait(Clock::time_point deadline) {
     int status = 0;
-    while (::waitpid(id_, &status, 0) < 0 && errno == EINTR) {
+    while (true) {
+      const pid_t ended = ::waitpid(id_, &status, WNOHANG);
+      if (ended == id_) break;
+      if (Clock::now() >= deadline) return {};
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     id_ = 0;
     return status;
@@ -139,14 +154,17 @@ class Child {
   int pipe_ = -1;
 };
 
+std::string too_slow(const ChildLimits& limits) {
+  return "did not end within " + std::to_string(std::lround(limits.seconds)) + " s";
+}
+
 /// All that comes through the pipe; a sentence in place of it when the child is too slow or says too much.
-std::pair<std::string, std::string> receive(int pipe, const ChildLimits& limits) {
-  const auto end = Clock::now() + std::chrono::duration<double>(limits.seconds);
+std::pair<std::string, std::string> receive(int pipe, const ChildLimits& limits, Clock::time_point deadline) {
   std::string bytes;
   std::string chunk(1 << 20, '\0');
   while (true) {
-    const double left = std::chrono::duration<double>(end - Clock::now()).count();
-    if (left <= 0.0) return {"", "did not end within " + std::to_string(std::lround(limits.seconds)) + " s"};
+    const double left = std::chrono::duration<double>(deadline - Clock::now()).count();
+    if (left <= 0.0) return {"", too_slow(limits)};
     pollfd wanted{pipe, POLLIN, 0};
     const int ready = ::poll(&wanted, 1, static_cast<int>(std::min(left * 1e3, 1e6)) + 1);
     if (ready <= 0) continue;  // interrupted, or time is up
@@ -173,11 +191,14 @@ std::string run_limited(const fs::path& file, const std::string& kind, const std
                         const ChildLimits& limits) {
   const std::string reader = file.string() + ": the reader of " + kind + " files ";
   const std::string advice = "; the file is damaged, or not of that kind";
+  const auto deadline =
+      Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(limits.seconds));
   Child child(work, limits, file);
-  auto [bytes, complaint] = receive(child.pipe(), limits);
+  auto [bytes, complaint] = receive(child.pipe(), limits, deadline);
   if (!complaint.empty()) throw InputError(reader + complaint + advice);
-  const int status = child.wait();
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) throw InputError(reader + ending(status) + advice);
+  const std::optional<int> status = child.wait(deadline);
+  if (!status) throw InputError(reader + too_slow(limits) + advice);
+  if (!WIFEXITED(*status) || WEXITSTATUS(*status) != 0) throw InputError(reader + ending(*status) + advice);
   if (bytes.empty() || (bytes[0] != kResult && bytes[0] != kRefusal)) {
     throw InputError(reader + "sent back nothing of use" + advice);
   }

@@ -65,7 +65,7 @@ std::vector<RecordingFile> indexed(const fs::path& path, bool directory, const R
   return rows;
 }
 
-/// A file whose path below PATH is `name`; none when the expression does not match it.
+/// A file whose path ends in `name`; none when the expression does not match that.
 std::optional<RecordingFile> match(const fs::path& file, const std::string& name, const std::regex& expression,
                                    const RecordingFiles& layout) {
   // The library's matcher needs stack in proportion to the text: names are short, others are not recordings.
@@ -81,26 +81,34 @@ std::optional<RecordingFile> match(const fs::path& file, const std::string& name
   return found;
 }
 
+/// What a file is does not depend on the PATH that led to it: the shortest end of its path that matches.
+std::optional<RecordingFile> shortest_match(const fs::path& file, const std::regex& expression,
+                                            const RecordingFiles& layout) {
+  fs::path name;
+  const fs::path whole = fs::absolute(file).lexically_normal().relative_path();
+  for (auto part = whole.end(); part != whole.begin();) {
+    --part;
+    name = name.empty() ? *part : *part / name;
+    if (auto found = match(file, name.generic_string(), expression, layout)) return found;
+  }
+  return {};
+}
+
 std::vector<RecordingFile> named(const fs::path& path, bool directory, const RecordingFiles& layout) {
   const std::regex expression(layout.expression);
-  std::vector<RecordingFile> found;
+  std::vector<fs::path> files;
   if (directory) {
-    std::vector<std::string> names;
     for (const auto& entry : fs::recursive_directory_iterator(path)) {
-      if (entry.is_regular_file()) names.push_back(entry.path().lexically_relative(path).generic_string());
+      if (entry.is_regular_file()) files.push_back(entry.path());
     }
-    std::sort(names.begin(), names.end());
-    for (const auto& name : names) {
-      if (auto file = match(path / name, name, expression, layout)) found.push_back(std::move(*file));
-    }
+    std::sort(files.begin(), files.end(),
+              [](const auto& a, const auto& b) { return a.generic_string() < b.generic_string(); });
   } else {
-    // How far up the folder lies that the expression is relative to is not known: the shortest path that matches.
-    fs::path name;
-    const fs::path whole = fs::absolute(path).relative_path();
-    for (auto part = whole.end(); part != whole.begin() && found.empty();) {
-      name = name.empty() ? *--part : *--part / name;
-      if (auto file = match(path, name.generic_string(), expression, layout)) found.push_back(std::move(*file));
-    }
+    files.push_back(path);
+  }
+  std::vector<RecordingFile> found;
+  for (const auto& file : files) {
+    if (auto recording = shortest_match(file, expression, layout)) found.push_back(std::move(*recording));
   }
   if (found.empty()) {
     throw_input(path, 0, directory ? "number of recordings in the folder" : "the file's name",

@@ -3,6 +3,7 @@
 #include <hdf5.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <limits>
 #include <set>
@@ -51,6 +52,93 @@ bool is_standard(hid_t type) {
   return false;
 }
 
+/// Refuses a dataset of which the file does not hold every value: libhdf5 would give zeros for them, or the values of
+/// another file.
+class HeldValues {
+ public:
+  HeldValues(const Handle& group, const std::string& name, const Handle& dataset, std::size_t value_bytes)
+      : group_(group),
+        name_(name),
+        dataset_(dataset),
+        creation_(checked(H5Dget_create_plist(dataset.id())), H5Pclose),
+        value_bytes_(value_bytes) {
+    const Handle file(checked(H5Iget_file_id(dataset.id())), H5Fclose);
+    const Handle file_creation(checked(H5Fget_create_plist(file.id())), H5Pclose);
+    checked(H5Fget_filesize(file.id(), &file_bytes_));
+    checked(H5Pget_userblock(file_creation.id(), &user_block_));
+  }
+
+  void require_all(const std::vector<hsize_t>& shape) const {
+    if (checked(H5Pget_external_count(creation_.id())) > 0) refuse("its values are in other files");
+    switch (H5Pget_layout(creation_.id())) {
+      case H5D_COMPACT:
+        return;
+      case H5D_CONTIGUOUS:  // counts its address from the start of the file, chunks from behind the user block
+        return require_inside(H5Dget_offset(dataset_.id()), H5Dget_storage_size(dataset_.id()), 0);
+      case H5D_CHUNKED:
+        return require_chunks(shape);
+      default:
+        refuse("its values are in other datasets");
+    }
+  }
+
+ private:
+  template <typename T>
+  T checked(T result) const {
+    return hdf5::checked(result, group_.id(), name_, "read the layout");
+  }
+  [[noreturn]] void refuse(const std::string& why) const { hdf5::fail(group_.id(), name_, "read the dataset", why); }
+
+  void require_inside(haddr_t address, hsize_t size, hsize_t base) const {
+    if (address == HADDR_UNDEF) refuse("values were never written");
+    if (size > file_bytes_ || base > file_bytes_ - size || address > file_bytes_ - size - base) {
+      refuse("values lie beyond the end of the file");
+    }
+  }
+
+  void require_chunks(const std::vector<hsize_t>& shape) const {
+    std::vector<hsize_t> chunk(shape.size());
+    checked(H5Pget_chunk(creation_.id(), static_cast<int>(chunk.size()), chunk.data()));
+    const std::vector<hsize_t> all{shape[0], shape.size() == 2 ? shape[1] : 1};
+    const std::vector<hsize_t> step{chunk[0], shape.size() == 2 ? chunk[1] : 1};
+    // libhdf5 1.10 looks through all chunks to find one.
+    constexpr hsize_t kMostChunks = 10000;
+    if (((all[0] - 1) / step[0] + 1) * ((all[1] - 1) / step[1] + 1) > kMostChunks) {
+      refuse("it has more than 10000 chunks (h5repack makes larger ones)");
+    }
+    for (hsize_t row = 0; row < all[0]; row += step[0]) {
+      for (hsize_t column = 0; column < all[1]; column += step[1]) {
+        const std::array<hsize_t, 2> place{row, column};
+        unsigned skipped = 0;
+        haddr_t address = HADDR_UNDEF;
+        hsize_t size = 0;
+        checked(H5Dget_chunk_info_by_coord(dataset_.id(), place.data(), &skipped, &address, &size));
+        require_inside(address, size, user_block_);
+        require_filters(skipped, size >= step[0] * step[1] * value_bytes_);
+      }
+    }
+  }
+
+  /// What a chunk says it went without: compression, when that would not have made it smaller; no check sum.
+  void require_filters(unsigned skipped, bool full_size) const {
+    for (unsigned i = 0; skipped >> i != 0; ++i) {
+      if ((skipped >> i & 1U) == 0) continue;
+      unsigned flags = 0;
+      std::size_t parameters = 0;
+      const H5Z_filter_t filter = H5Pget_filter2(creation_.id(), i, &flags, &parameters, nullptr, 0, nullptr, nullptr);
+      if (filter != H5Z_FILTER_DEFLATE || !full_size) refuse("values were stored without one of its filters");
+    }
+  }
+
+  const Handle& group_;
+  const std::string& name_;
+  const Handle& dataset_;
+  Handle creation_;
+  std::size_t value_bytes_;
+  hsize_t file_bytes_ = 0;
+  hsize_t user_block_ = 0;
+};
+
 /// A dataset of numbers of rank 1 or 2 as doubles.
 RowMajor read_numbers(const Handle& group, const std::string& name) {
   const Handle dataset(
@@ -66,10 +154,10 @@ RowMajor read_numbers(const Handle& group, const std::string& name) {
   if (shape[0] > kMost || columns > kMost || shape[0] * columns > kMost) {
     hdf5::fail(group.id(), name, "read the dataset", "it has more than 268 million numbers");
   }
-  // What the file does not hold shall not pass for numbers.
   RowMajor values = RowMajor::Constant(static_cast<Eigen::Index>(shape[0]), static_cast<Eigen::Index>(columns),
                                        std::numeric_limits<double>::quiet_NaN());
   if (values.size() == 0) return values;
+  HeldValues(group, name, dataset, H5Tget_size(type.id())).require_all(shape);
   hdf5::checked(H5Dread(dataset.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), group.id(),
                 name, "read the dataset");
   return values;
@@ -123,6 +211,8 @@ void add_attributes(const Handle& group, const SourceDescription& source, Table&
 
 std::vector<Table> read_hdf5_tables(const fs::path& file, const SourceDescription& source) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  // A recording is what its own file holds. This process ends with the reading, so nobody else misses such links.
+  H5Lunregister(H5L_TYPE_EXTERNAL);
   const hid_t opened = H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   if (opened < 0) throw InputError(file.string() + ": not an intact HDF5 file: " + hdf5::reason());
   const Handle root(opened, H5Fclose);

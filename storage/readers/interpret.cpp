@@ -60,12 +60,15 @@ std::vector<Range> trials_of(const Eigen::VectorXd& time, const Table& table, co
                              const SourceDescription& source) {
   std::vector<Range> trials{{0, time.size()}};
   for (Eigen::Index i = 1; i < time.size(); ++i) {
-    if (time[i] > time[i - 1]) continue;
+    // As it is stored, from the trial's first sample on: two large times may then be one, or infinitely far apart.
+    const double start = time[trials.back().begin];
+    const double step = (time[i] - start) - (time[i - 1] - start);
+    if (step > 0.0 && std::isfinite(step)) continue;
     const bool back = time[i] < time[i - 1];
     if (!back || !source.split_where_time_goes_back) {
+      const char* what = back ? "goes back" : step > 0.0 ? "leaps by more than a number can tell" : "stands still";
       fail_row(table, file, i, time_name(source), time[i],
-               "a time after that of " + row_name(table, i - 1) + " (" + std::to_string(time[i - 1]) + " s): time " +
-                   (back ? "goes back" : "stands still"));
+               "a time after that of " + row_name(table, i - 1) + " (" + shortest(time[i - 1]) + " s): time " + what);
     }
     trials.back().end = i;
     trials.push_back({i, time.size()});
@@ -126,12 +129,12 @@ void unwrap(Samples& samples, bool ordered) {
 
 /// A time in milliseconds taken for seconds would ask for a thousand times the samples, or for more than memory holds.
 void require_resamplable(const Samples& samples, double rate, const fs::path& file) {
-  const double end = samples.time[samples.time.size() - 1];
-  if ((end - samples.time[0]) * rate <= kMaxSamples) return;
+  const double duration = samples.time[samples.time.size() - 1];
+  if (duration * rate <= kMaxSamples) return;
   char limit[120];
   std::snprintf(limit, sizeof limit, "at most %.3g samples at resample.rate %.4g Hz; is the time in seconds?",
                 kMaxSamples, rate);
-  throw_input(file, 0, "the last time", shortest(end) + " s", limit);
+  throw_input(file, 0, "the duration", shortest(duration) + " s", limit);
 }
 
 void report_steps(const Eigen::VectorXd& time, FileReport& report) {
@@ -265,7 +268,7 @@ void interpret(const Table& table, const RecordingFile& file, const std::string&
     report.sha256 = sha256;
     report.companions = file.companions;
     report.rows = static_cast<int>(rows);
-    Samples samples{time.segment(begin, rows), {}};
+    Samples samples{time.segment(begin, rows).array() - time[begin], {}};
     samples.q = trials.size() == 1 ? std::move(angles) : Eigen::MatrixXd(angles.middleRows(begin, rows));
     samples = process(std::move(samples), source, report);
     Demonstration& demonstration = recording.demonstration;

@@ -16,7 +16,8 @@ Eigen::RowVectorXd interpolate(const Samples& samples, double t, Eigen::Index& h
   if (t >= samples.time[last]) return samples.q.row(last);
   while (samples.time[hint + 1] < t) ++hint;
   const double fraction = (t - samples.time[hint]) / (samples.time[hint + 1] - samples.time[hint]);
-  return (1.0 - fraction) * samples.q.row(hint) + fraction * samples.q.row(hint + 1);
+  // In this form a channel that stands still keeps its value to the last bit.
+  return samples.q.row(hint) + fraction * (samples.q.row(hint + 1) - samples.q.row(hint));
 }
 
 }  // namespace

@@ -187,9 +187,12 @@ TEST(Degenerate, NotFiniteOrTooLarge) {
     covariance(0, 0) = bad;
     EXPECT_THROW(principal_axes({1.0, Eigen::VectorXd::Zero(2), covariance}), std::invalid_argument);
     EXPECT_THROW(effective_subspace(covariance, Eigen::VectorXd::Zero(2)), std::invalid_argument);
-    const auto likeness = log_likeness({1.0, Eigen::VectorXd::Zero(2), covariance},
-                                       {1.0, Eigen::VectorXd::Zero(2), Eigen::MatrixXd::Identity(2, 2)}, 1e-4);
-    EXPECT_TRUE(!likeness || !std::isnan(bad));
+    const SampleStatistics good{1.0, Eigen::VectorXd::Zero(2), Eigen::MatrixXd::Identity(2, 2)};
+    for (const SampleStatistics& one : {SampleStatistics{1.0, good.mean, covariance},
+                                        SampleStatistics{1.0, Eigen::Vector2d(0.0, bad), good.covariance}}) {
+      EXPECT_THROW(log_likeness(one, good, 1e-4), std::invalid_argument);
+      EXPECT_THROW(bhattacharyya_distance(good, one, 1e-4), std::invalid_argument);
+    }
   }
   Demonstration still_clock = plain(1).front();
   const TransitionCurves curves = transition_curves(still_clock, {}).value();

@@ -76,12 +76,15 @@ constexpr int kDataSets = 1000;
 
 // Found by tests/analysis/data/interval_coverage.py, numpy, 10,000 data sets of the same population.
 constexpr double kBasicCoverage = 0.9210;
+constexpr int kFew = 5;
+constexpr int kFewKept = 3;
+constexpr double kJackknifeCoverage = 0.8402;  // of 5 recordings, first 3 axes
 constexpr double kReferenceDataSets = 10000;
 
 /// One data set: moments of recordings whose means are normal with 80 % of each channel's variance, the rest within.
-std::vector<SampleStatistics> data_set(const Eigen::VectorXd& deviation, Rng& rng) {
+std::vector<SampleStatistics> data_set(int count, const Eigen::VectorXd& deviation, Rng& rng) {
   std::vector<SampleStatistics> clusters;
-  for (int c = 0; c < kClusters; ++c) {
+  for (int c = 0; c < count; ++c) {
     const Eigen::VectorXd z = test::normal_matrix(kChannels, 1, rng);
     const Eigen::MatrixXd within = (0.2 * deviation.cwiseAbs2()).asDiagonal();
     clusters.push_back({30.0, std::sqrt(0.8) * deviation.cwiseProduct(z), within});
@@ -91,10 +94,10 @@ std::vector<SampleStatistics> data_set(const Eigen::VectorXd& deviation, Rng& rn
 
 /// Number of data sets, two-sided exact binomial at 1e-4, that agrees with the reference simulation, whose own error
 /// (3.9 standard errors: 1e-4) widens the bounds.
-bool accepted(int covered) {
-  const double error = 3.9 * std::sqrt(kBasicCoverage * (1 - kBasicCoverage) / kReferenceDataSets);
-  const boost::math::binomial low(kDataSets, kBasicCoverage - error);
-  const boost::math::binomial high(kDataSets, std::min(1.0, kBasicCoverage + error));
+bool accepted(int covered, double reference) {
+  const double error = 3.9 * std::sqrt(reference * (1 - reference) / kReferenceDataSets);
+  const boost::math::binomial low(kDataSets, reference - error);
+  const boost::math::binomial high(kDataSets, std::min(1.0, reference + error));
   return covered >= boost::math::quantile(low, 0.5e-4) &&
          covered <= boost::math::quantile(boost::math::complement(high, 0.5e-4));
 }
@@ -107,7 +110,7 @@ TEST(CumulativeVarianceInterval, CoversAsFoundByIndependentSimulation) {
   int percentile = 0;
   for (int i = 0; i < kDataSets; ++i) {
     Rng rng = test::numbered_stream(41, "data set/", i);
-    const std::vector<SampleStatistics> clusters = data_set(deviation, rng);
+    const std::vector<SampleStatistics> clusters = data_set(kClusters, deviation, rng);
     const double estimate = cumulative_variance(principal_axes(pooled(clusters)).variance)[kKept - 1];
     const Eigen::VectorXd shares = bootstrap_cumulative_variance(clusters, kReplicates, rng).col(kKept - 1);
     const std::vector<double> replicates(shares.begin(), shares.end());
@@ -120,8 +123,39 @@ TEST(CumulativeVarianceInterval, CoversAsFoundByIndependentSimulation) {
   RecordProperty("percentile", percentile);
   std::cout << "of " << kDataSets << " intervals, basic " << basic << " and percentile " << percentile
             << " hold the true share\n";
-  EXPECT_TRUE(accepted(basic)) << basic;
-  EXPECT_FALSE(accepted(percentile)) << percentile;
+  EXPECT_TRUE(accepted(basic, kBasicCoverage)) << basic;
+  EXPECT_FALSE(accepted(percentile, kBasicCoverage)) << percentile;
+}
+
+TEST(CumulativeVarianceInterval, OfFewClustersIsTheJackknifes) {
+  Eigen::VectorXd deviation(kChannels);
+  for (int i = 0; i < kChannels; ++i) deviation[i] = std::pow(0.8, i);
+  const double truth = cumulative_variance(deviation.cwiseAbs2())[kFewKept - 1];
+  const auto holds = [&](const Interval& one) { return one.low <= truth && truth <= one.high ? 1 : 0; };
+  int jackknife = 0;
+  int resampled = 0;
+  for (int i = 0; i < kDataSets; ++i) {
+    Rng rng = test::numbered_stream(44, "few clusters/", i);
+    const std::vector<SampleStatistics> clusters = data_set(kFew, deviation, rng);
+    jackknife += holds(cumulative_variance_intervals(clusters, kReplicates, 0.95, rng)[kFewKept - 1]);
+    const double estimate = cumulative_variance(principal_axes(pooled(clusters)).variance)[kFewKept - 1];
+    const Eigen::VectorXd shares = bootstrap_cumulative_variance(clusters, kReplicates, rng).col(kFewKept - 1);
+    resampled += holds(basic_logit_interval(estimate, {shares.begin(), shares.end()}, 0.95));
+  }
+  std::cout << "of " << kDataSets << " intervals of " << kFew << " clusters, jackknife " << jackknife
+            << " and resampled " << resampled << " hold the true share\n";
+  EXPECT_TRUE(accepted(jackknife, kJackknifeCoverage)) << jackknife;
+  EXPECT_FALSE(accepted(resampled, kJackknifeCoverage)) << resampled;
+}
+
+TEST(CumulativeVarianceInterval, OfFewClustersThatAreAlikeIsNarrowAndOfOneMovingJointCertain) {
+  SampleStatistics one{10.0, Eigen::Vector3d::Zero(), Eigen::Vector3d(3, 1, 0).asDiagonal()};
+  const auto alike = jackknife_intervals({one, one, one, one}, 0.95);
+  EXPECT_NEAR(alike[0].low, 0.75, 1e-12);
+  EXPECT_NEAR(alike[0].high, 0.75, 1e-12);
+  EXPECT_DOUBLE_EQ(alike[2].low, 1.0);
+  EXPECT_DOUBLE_EQ(alike[2].high, 1.0);
+  EXPECT_THROW(jackknife_intervals({one}, 0.95), std::invalid_argument);
 }
 
 /// Low and high end, as probabilities under the two beta distributions of Clopper and Pearson, must be the 2.5 % tails.

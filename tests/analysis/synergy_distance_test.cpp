@@ -89,14 +89,14 @@ TEST(Compare, EqualGroupsAreAtDistanceZeroWhateverTheScale) {
   const SynergyGroup a = learnt("cup", samples, ones);
   const SynergyComparison same = compare(a, a, 0.01).value();
   EXPECT_NEAR(same.distance, 0.0, 1e-12);
-  EXPECT_NEAR(same.bhattacharyya, 0.0, 1e-12);
+  EXPECT_NEAR(same.bhattacharyya.value(), 0.0, 1e-12);
   EXPECT_GE(same.shared_a, 0.95);  // beta
   EXPECT_DOUBLE_EQ(same.shared_a, same.shared_b);
   EXPECT_EQ(same.k_a, a.box.axes.cols());
   // Learnt in joint-range units the normal distribution is the same in radians; the kept span need not be.
   const SynergyComparison rescaled =
       compare(a, learnt("cup", samples, Eigen::VectorXd::LinSpaced(5, 0.5, 2.0)), 0.01).value();
-  EXPECT_NEAR(rescaled.bhattacharyya, 0.0, 1e-10);
+  EXPECT_NEAR(rescaled.bhattacharyya.value(), 0.0, 1e-10);
 }
 
 TEST(Compare, IsTheBhattacharyyaDistanceAndLikenessOfTheSamples) {
@@ -105,8 +105,8 @@ TEST(Compare, IsTheBhattacharyyaDistanceAndLikenessOfTheSamples) {
   const Eigen::MatrixXd other = (test::normal_matrix(300, 4, rng) * test::normal_matrix(4, 4, rng)).array() + 0.3;
   const Eigen::VectorXd scale = Eigen::VectorXd::LinSpaced(4, 0.5, 2.0);
   const SynergyComparison found = compare(learnt("a", one, scale), learnt("a", other, scale), 0.1).value();
-  EXPECT_NEAR(found.bhattacharyya, bhattacharyya_distance(moments(one), moments(other), 0.01).value(), 1e-10);
-  EXPECT_NEAR(found.log_likeness, log_likeness(moments(one), moments(other), 0.01).value(), 1e-10);
+  EXPECT_NEAR(found.bhattacharyya.value(), bhattacharyya_distance(moments(one), moments(other), 0.01).value(), 1e-10);
+  EXPECT_NEAR(found.log_likeness.value(), log_likeness(moments(one), moments(other), 0.01).value(), 1e-10);
   EXPECT_GT(found.distance, 0.0);
   EXPECT_LT(found.shared_a, 1.0);
 }
@@ -130,6 +130,9 @@ TEST(Compare, SetsByGroupName) {
   b = a;
   b.order = 1;
   EXPECT_EQ(compare(a, b, 0.01).error().code, FailureCode::invalid_input);
+  SynergySet velocities = a;
+  velocities.order = 1;
+  EXPECT_EQ(compare(velocities, velocities, 0.01).value().at(0).bhattacharyya, std::nullopt);
   b = a;
   b.pre_grasp.phase = "all";
   b.grasp = {learnt("tape", samples(), ones)};

@@ -1,12 +1,13 @@
 # SPDX-FileCopyrightText: 2026 The opponens authors
 # SPDX-License-Identifier: BSD-3-Clause
 """retarget: the mappings, what they report and store, and what they refuse."""
+import json
 import pathlib
 import shutil
 import tempfile
 import unittest
 
-from support import SHARED, must, run
+from support import HEADER, SHARED, SOURCE, data_set, forge, must, rows, run
 
 SHADOW = SHARED / "data/robots/dex-urdf/robots/hands/shadow_hand/shadow_hand_right.urdf"
 
@@ -42,6 +43,36 @@ class Retarget(unittest.TestCase):
         code, _, said = run("retarget", "--store", self.store, "--hand-length", 0.2)
         self.assertEqual(code, 2)
         self.assertIn("--hand-length", said)
+
+    def test_an_unusable_recording_does_not_stop_the_others(self):
+        before = len(self.retarget()["ids"])
+        lacking = self.folder / "lacking"
+        data_set(lacking, {"one": [HEADER.replace("I_PIP", "other"), *rows()]})
+        source = self.folder / "source.yaml"
+        text = (SOURCE / "models/sources/west_r2g.yaml").read_text()
+        source.write_text("\n".join(line for line in text.splitlines() if "column: I_PIP" not in line) + "\n")
+        must("ingest", lacking, "--source", source, "--store", self.store)
+        code, out, said = run("retarget", "--store", self.store, "--json")
+        self.assertEqual(code, 0, said)
+        found = json.loads(out)
+        self.assertEqual(len(found["ids"]), before)
+        self.assertEqual(len(found["skipped"]), 1)
+        self.assertIn("no channel 'I_PIP'", found["skipped"][0]["reason"])
+        self.assertIn("skipped", said)
+        alone = self.folder / "alone"
+        must("ingest", lacking, "--source", source, "--store", alone)
+        code, _, said = run("retarget", "--store", alone)
+        self.assertEqual(code, 2)
+        self.assertIn("no recording could be mapped", said)
+
+    def test_an_error_on_any_thread_ends_the_command_in_words(self):
+        def turn_back(fields):
+            fields["time"][...] = fields["time"][...][::-1]
+
+        forge(self.store, "demonstration", turn_back)
+        code, _, said = run("retarget", "--store", self.store, "--threads", 2)
+        self.assertGreater(code, 0, "ended by a signal")
+        self.assertIn("time does not increase", said)
 
     def test_a_hand_without_its_urdf_says_so(self):
         code, _, said = run("retarget", "--store", self.store, "--hand", "models/shadow_hand/shadow_right.yaml",

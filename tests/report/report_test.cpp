@@ -14,6 +14,7 @@
 
 #include "report/body_drawing.hpp"
 #include "report/paper_tables.hpp"
+#include "report/text.hpp"
 #include "tests/report/markup_check.hpp"
 #include "tests/report/synthetic_report.hpp"
 
@@ -183,8 +184,9 @@ TEST(Report, EveryMissingPartBecomesASentence) {
 TEST(Report, EveryPictureIsAFileOfItsOwn) {
   const std::string page = render_report(small());
   const auto files = svg_files(page);
+  const std::string kPicture = "<svg xmlns=";  // a clipped region inside a picture is an <svg> too
   std::size_t drawn = 0;
-  for (std::size_t at = page.find("<svg"); at != std::string::npos; at = page.find("<svg", at + 1)) ++drawn;
+  for (std::size_t at = page.find(kPicture); at != std::string::npos; at = page.find(kPicture, at + 1)) ++drawn;
   EXPECT_GT(drawn, 10u);
   ASSERT_EQ(files.size(), drawn);
   std::set<std::string> names;
@@ -214,6 +216,66 @@ TEST(Report, CoverageAndTheMappingAreShown) {
   }
 }
 
+/// Vertical places of the dashed lines in a plot, from the left.
+std::vector<double> dashed_heights(const std::string& svg) {
+  static const std::regex kDashed(R"re(<polyline points="[-0-9.]+,([-0-9.]+) [^>]*stroke-dasharray)re");
+  std::vector<double> heights;
+  for (std::sregex_iterator it(svg.begin(), svg.end(), kDashed), end; it != end; ++it)
+    heights.push_back(std::stod((*it)[1].str()));
+  return heights;
+}
+
+TEST(Report, EachGroupsCoverageStandsAtItsOwnNominalAndNamesItsCluster) {
+  ReportInput input = small();
+  input.synergies->groups[0].reduced_box->nominal = 0.99;
+  input.synergies->groups[1].reduced_box->nominal = 0.91;
+  input.synergies->groups[0].cluster = "subject";
+  const std::string page = render_report(input);
+  const std::size_t title = page.find("Coverage of the first k coordinates");
+  ASSERT_NE(title, std::string::npos);
+  const auto heights = dashed_heights(page.substr(title, page.find("</svg>", title) - title));
+  ASSERT_EQ(heights.size(), 2U) << "one line per group";
+  EXPECT_LT(heights[0] + 5.0, heights[1]) << "99 % lies above 91 %";
+  EXPECT_TRUE(contains(page, "Coverage of the first k coordinates. 1: pre-grasp, 2: family 1."));
+  for (const char* cluster : {"subject", "recording"}) {
+    EXPECT_TRUE(contains(page, concat({"<td>", cluster, "</td>"}))) << cluster;
+  }
+}
+
+TEST(Report, AGroupOfTooFewClustersHasNoBandAndSaysSo) {
+  const std::string said = "no interval: too few clusters";
+  ReportInput input = small();
+  EXPECT_FALSE(contains(render_report(input), said));
+  auto& item = input.synergies->groups[1];
+  item.cumulative_low.resize(0);
+  item.cumulative_high.resize(0);
+  item.full_box->interval.reset();
+  const std::string page = render_report(input);
+  expect_sound(page);
+  EXPECT_TRUE(contains(page, concat({"this analysis (", said, ")"})));
+  EXPECT_TRUE(contains(page, concat({"[", said, "] of "})));
+}
+
+TEST(Report, WithoutASplitNoRuleIsInForce) {
+  ReportInput input = small();
+  EXPECT_TRUE(contains(render_report(input), "In force here: likeness."));
+  input.transitions = TransitionPart{};
+  const std::string page = render_report(input);
+  EXPECT_FALSE(contains(page, "In force here"));
+  EXPECT_TRUE(contains(page, "No split was made here"));
+}
+
+TEST(Report, APostureBeyondTheLimitsSaysByHowMuchItWasClipped) {
+  ReportInput input = small();
+  input.synergies->groups.resize(1);
+  auto& basis = input.synergies->groups[0].group.basis;
+  basis.mean = rest_configuration(*input.hand);
+  basis.variance.setZero();
+  EXPECT_FALSE(contains(render_report(input), "clipped by")) << "the rest configuration is within the limits";
+  basis.mean[2] = input.hand->upper()[2] + 0.37;
+  EXPECT_TRUE(contains(render_report(input), "mean, clipped by 0.37"));
+}
+
 TEST(Report, HostileTextStaysText) {
   const std::string evil = "</style><script>alert(1)</script>\"'&\xFF";
   ReportInput input = small();
@@ -229,9 +291,8 @@ TEST(Report, HostileTextStaysText) {
   input.transitions->method = evil;
   input.transitions->example->demonstration = evil;
   input.synergies->grouped_by = evil;
-  input.synergies->cluster = evil;
+  input.synergies->groups[1].cluster = evil;
   input.synergies->box_root = evil;
-  input.synergies->joint_names[0] = evil;
   input.synergies->groups[1].group.name = evil;
   input.synergies->groups[1].group.dropped_channels = {evil};
   input.grasps->items[0].id = evil;
@@ -242,7 +303,6 @@ TEST(Report, HostileTextStaysText) {
   input.grasps->object = evil;
   input.path->id = evil;
   input.path->goal_grasp = evil;
-  input.path->path.joint_names[0] = evil;
   input.path->runs[0].planner = evil;
   input.path->runs[0].result.detail = evil;
   input.path->runs[0].human_likeness[0].reference = evil;
@@ -263,6 +323,13 @@ TEST(Report, HostileTextStaysText) {
   EXPECT_FALSE(contains(page, "<script"));
   EXPECT_FALSE(contains(page, "\xFF"));
   EXPECT_TRUE(contains(page, "&lt;script&gt;alert(1)"));
+  input.hand.reset();  // names that a robot lacks cannot be drawn
+  input.robot.reset();
+  input.synergies->joint_names[0] = evil;
+  input.path->path.joint_names[0] = evil;
+  const std::string undrawn = render_report(input);
+  expect_sound(undrawn);
+  EXPECT_FALSE(contains(undrawn, "<script"));
 }
 
 TEST(Report, SizesThatDisagreeAreRefused) {
@@ -274,6 +341,8 @@ TEST(Report, SizesThatDisagreeAreRefused) {
       [](ReportInput& i) { i.grasps->items[0].grasp.q_grasp.conservativeResize(3); },
       [](ReportInput& i) { i.path->times.conservativeResize(3); },
       [](ReportInput& i) { i.path->path.joint_names.pop_back(); },
+      [](ReportInput& i) { i.path->path.joint_names[0] = "unknown"; },
+      [](ReportInput& i) { i.synergies->joint_names[0] = "unknown"; },
       [](ReportInput& i) { i.path->pregrasp = 4000; },
   };
   for (std::size_t c = 0; c < breaks.size(); ++c) {
@@ -309,15 +378,16 @@ TEST(Report, AFailedRunAndAFailedVerdictAreSeen) {
   EXPECT_TRUE(contains(page, "slips"));
 }
 
-TEST(ByName, OrdersByNameAndClips) {
+TEST(ByName, OrdersByNameAndKeepsTheValues) {
   const auto& hand = *full().hand;
   const auto& names = hand.joint_names();
   const Eigen::VectorXd base = rest_configuration(hand);
-  const Eigen::VectorXd q = by_name(hand, {names[5], "unknown", names[2]}, Eigen::Vector3d(0.3, 7.0, 100.0), base);
+  const Eigen::VectorXd q = by_name(hand, {names[5], names[2]}, Eigen::Vector2d(0.3, 100.0), base);
   EXPECT_DOUBLE_EQ(q[5], 0.3);
-  EXPECT_DOUBLE_EQ(q[2], hand.upper()[2]);
+  EXPECT_DOUBLE_EQ(q[2], 100.0) << "clipping is the caller's, who may have to say so";
   EXPECT_DOUBLE_EQ(q[7], base[7]);
   EXPECT_THROW(by_name(hand, {names[0]}, Eigen::Vector2d(0, 0), base), std::invalid_argument);
+  EXPECT_THROW(by_name(hand, {names[0], "unknown"}, Eigen::Vector2d(0, 0), base), std::invalid_argument);
 }
 
 /// The figures embedded in the program against the published table as transcribed independently.

@@ -99,6 +99,7 @@ TransitionPart transitions(Rng& rng) {
 SynergyItem group(const std::string& name, const std::string& phase, double first, Rng& rng, int samples) {
   SynergyItem item;
   item.samples = samples;
+  item.cluster = "recording";
   item.group.name = name;
   item.group.phase = phase;
   Eigen::MatrixXd random(kJoints, kJoints);
@@ -144,7 +145,6 @@ SynergyPart synergies(const robot::RobotModel& hand, Rng& rng) {
   part.joint_names = hand.joint_names();
   part.grouped_by = "family";
   part.box_root = "n";
-  part.cluster = "recording";
   part.groups.push_back(group("pre-grasp", "pre-grasp", 0.62, rng, 8920));
   for (const auto& [name, first] : {std::pair{"1", 0.75}, {"2", 0.6}, {"3", 0.65}, {"4", 0.85}}) {
     part.groups.push_back(group(name, "grasp", first, rng, 2300));

@@ -53,33 +53,6 @@ TEST(HandMapping, MappingErrorsNameTheField) {
   std::filesystem::remove_all(folder);
 }
 
-TEST(CalibrateRange, MapsPercentilesToTheJointRange) {
-  const RobotModel human(load_hand(kHuman));
-  Demonstration recording;
-  recording.id = "r";
-  recording.joint_names = {"I_MCP", "I_PIP", "unknown", "M_MCP"};
-  recording.time = Eigen::VectorXd::LinSpaced(101, 0, 1);
-  recording.q_h.resize(101, 4);
-  for (int t = 0; t <= 100; ++t) recording.q_h.row(t) << 0.01 * t, -0.02 * t, t, 0.7;
-  const ChannelCalibration calibration = calibrate_range({&recording}, human, {{"I_PIP", -1.0}});
-  ASSERT_EQ(calibration.channels, (std::vector<std::string>{"I_MCP", "I_PIP", "M_MCP"}));
-  const auto joint = [&](const std::string& name) {
-    const auto& names = human.joint_names();
-    return std::find(names.begin(), names.end(), name) - names.begin();
-  };
-  const Eigen::Index mcp = joint("I_MCP");
-  EXPECT_NEAR(calibration.gain[0] * 0.01 + calibration.offset[0], human.lower()[mcp], 1e-12);
-  EXPECT_NEAR(calibration.gain[0] * 0.99 + calibration.offset[0], human.upper()[mcp], 1e-12);
-  const Eigen::Index pip = joint("I_PIP");
-  EXPECT_NEAR(calibration.gain[1] * -0.02 + calibration.offset[1], human.lower()[pip], 1e-12);
-  EXPECT_NEAR(calibration.gain[1] * -1.98 + calibration.offset[1], human.upper()[pip], 1e-12);
-  EXPECT_EQ(calibration.gain[2], 0.0) << "a channel that does not move";
-  EXPECT_EQ(calibration.offset[2], 0.0);
-  recording.q_h(3, 0) = std::nan("");
-  EXPECT_THROW(calibrate_range({&recording}, human, {}), std::invalid_argument);
-  EXPECT_THROW(calibrate_range({}, human, {}), std::invalid_argument);
-}
-
 TEST(Retarget, CopiesExactlyStaysInsideTheLimitsAndKeepsTheRest) {
   const Hands hands;
   const Demonstration recording = swing(hands.human, 0.0, 1.0);
@@ -272,6 +245,9 @@ TEST(Retarget, SaysWhatIsMissing) {
   Demonstration renamed = recording;
   renamed.joint_names[static_cast<std::size_t>(column(recording, "R_PIP"))] = "other";
   EXPECT_NE(code(renamed, hands.mapping).find("no channel 'R_PIP'"), std::string::npos);
+  HandMapping without = hands.mapping;  // nothing copied: the tips still need their channels
+  without.copied.clear();
+  EXPECT_NE(code(renamed, without).find("no channel 'R_PIP'"), std::string::npos);
   Demonstration broken = recording;
   broken.q_h(2, 2) = std::nan("");
   EXPECT_NE(code(broken, hands.mapping).find("not finite"), std::string::npos);
@@ -284,6 +260,27 @@ TEST(Retarget, SaysWhatIsMissing) {
   Demonstration ragged = recording;
   ragged.time.conservativeResize(3);
   EXPECT_THROW(code(ragged, hands.mapping), std::invalid_argument);
+}
+
+TEST(Retarget, ChannelsThatAreAssumedAreNamed) {
+  const Hands hands;
+  const Demonstration recording = swing(hands.human, 0.2, 0.8, 5);
+  const auto lacking = [&](const char* channel, MappingKind kind) {
+    Demonstration input = recording;
+    input.joint_names[static_cast<std::size_t>(column(recording, channel))] = "other";
+    RetargetSettings settings = default_settings(kind);
+    settings.alignment = HandAlignment{};
+    return retarget(input, {}, hands.human, hands.hand, hands.mapping, settings);
+  };
+  for (const MappingKind kind : {MappingKind::joint, MappingKind::fingertip, MappingKind::paper}) {
+    for (const char* channel : {"T_ROT", "I_ABD", "T_ABD"}) {
+      const auto result = lacking(channel, kind);
+      ASSERT_FALSE(result) << channel << " would be constant";
+      EXPECT_EQ(result.error().code, FailureCode::not_found);
+    }
+    EXPECT_EQ(lacking("M_ABD", kind).value().assumed, std::vector<std::string>{"M_ABD"});
+    EXPECT_TRUE(lacking("L_ABD", kind).value().assumed.empty()) << "the Allegro has no little finger";
+  }
 }
 
 }  // namespace

@@ -170,6 +170,27 @@ TEST(RetargetFingertip, LimitsAreNeverViolatedAndSharesAreCounted) {
   }
 }
 
+/// A table of postures has no order, so none may show in the result.
+TEST(RetargetFingertip, PermutingPosturesPermutesTheResult) {
+  const Hands hands;
+  const Demonstration recording = swing(hands.human, 0.2, 0.8, 12);
+  Demonstration turned = recording;
+  turned.q_h = recording.q_h.colwise().reverse().eval();
+  for (const MappingKind kind : {MappingKind::fingertip, MappingKind::paper}) {
+    RetargetSettings settings = default_settings(kind);
+    settings.alignment = HandAlignment{1.5, Eigen::Vector3d::Zero()};
+    const auto mapped = [&](const Demonstration& postures, bool unordered) {
+      settings.postures = unordered;
+      return retarget(postures, {}, hands.human, hands.hand, hands.mapping, settings).value().demonstration.q_h;
+    };
+    EXPECT_EQ(mapped(turned, true).colwise().reverse().eval(), mapped(recording, true));
+    Demonstration slower = recording;  // companion: as movements they depend on time and order
+    slower.q_h.row(5) = recording.q_h.row(0);
+    EXPECT_EQ(mapped(slower, true).row(4), mapped(recording, true).row(4));
+    EXPECT_NE(mapped(slower, false).row(4), mapped(recording, false).row(4));
+  }
+}
+
 TEST(RetargetFingertip, SaysWhenTheSolverStoppedEarly) {
   const Hands hands;
   RetargetSettings settings = default_settings(MappingKind::fingertip);

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/require.hpp"
 #include "core/rng.hpp"
 #include "robot/load_robot.hpp"
 #include "robot_test.hpp"
@@ -175,10 +176,28 @@ TEST(RobotModel, JointsThatAreNotActuatedRestNearestToZero) {
 
 TEST(RobotModel, ClipAndLimits) {
   const RobotModel robot(slider());
-  EXPECT_EQ(robot.clip(Eigen::Vector2d(-9, 9)), Eigen::Vector2d(-1.5, 1.5));
-  EXPECT_TRUE(robot.within_limits(Eigen::Vector2d(1.5, -1.5)));
+  EXPECT_EQ(robot.clip(Eigen::Vector2d(-9, -9)).x(), -1.5);
+  EXPECT_EQ(robot.clip(Eigen::Vector2d(9, 9)).x(), 1.5);
+  EXPECT_TRUE(robot.within_limits(Eigen::Vector2d(1.5, 0)));
   EXPECT_FALSE(robot.within_limits(Eigen::Vector2d(1.5 + 1e-6, 0)));
   EXPECT_FALSE(robot.within_limits(Eigen::Vector2d(std::nan(""), 0)));
+}
+
+TEST(RobotModel, LimitsOfMimicJointsRestrictTheirDriver) {
+  const auto limits = [](auto change) {
+    RobotDescription description = slider();
+    change(description.joints[2]);
+    const RobotModel robot(description);
+    return Eigen::Vector2d(robot.lower()[1], robot.upper()[1]);
+  };
+  // -2 r + 0.3 in [-1.5, 1.5] means r in [-0.6, 0.9].
+  EXPECT_TRUE(limits([](Joint&) {}).isApprox(Eigen::Vector2d(-0.6, 0.9), 1e-15));
+  EXPECT_TRUE(limits([](Joint& m) { m.mimic->multiplier = 2.0; }).isApprox(Eigen::Vector2d(-0.9, 0.6), 1e-15));
+  const Eigen::Vector2d own(-1.5, 1.5);
+  EXPECT_EQ(limits([](Joint& m) { m.mimic->multiplier = 0.1; }), own) << "wider than the driver's own";
+  EXPECT_EQ(limits([](Joint& m) { m.mimic->multiplier = 0.0; }), own);
+  EXPECT_EQ(limits([](Joint& m) { m.lower = m.upper = 0.0; }), own) << "it has none";
+  EXPECT_THROW(limits([](Joint& m) { m.mimic->offset = 9.0; }), InputError);
 }
 
 TEST(RobotModel, ScalingScalesEveryLength) {

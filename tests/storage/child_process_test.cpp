@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "storage/readers/child_process.hpp"
 
+#include <poll.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -53,6 +55,46 @@ TEST(ChildProcess, HangsEnd) {
                            },
                            limits),
                        {"some/file.mat", "did not end within"}));
+}
+
+TEST(ChildProcess, HangsAfterTheEndOfOutputEnd) {
+  ChildLimits limits;
+  limits.seconds = 0.3;
+  EXPECT_TRUE(contains(refusal(
+                           []() -> std::string {
+                             for (int file = 3; file < 1024; ++file) ::close(file);
+                             while (true) ::pause();
+                           },
+                           limits),
+                       {"some/file.mat", "did not end within"}));
+}
+
+TEST(ChildProcess, DiesWithItsParent) {
+  // Both hold the end of this pipe that is written to: the other end sees its end when neither lives.
+  int ends[2];
+  ASSERT_EQ(::pipe(ends), 0);
+  const pid_t parent = ::fork();
+  if (parent == 0) {
+    try {
+      run_limited("f", "HDF5",
+                  [&]() -> std::string {
+                    if (::write(ends[1], "w", 1) != 1) ::_exit(1);
+                    while (true) ::pause();
+                  },
+                  {});
+    } catch (...) {
+    }
+    ::_exit(0);
+  }
+  ::close(ends[1]);
+  char working = 0;
+  EXPECT_EQ(::read(ends[0], &working, 1), 1);
+  ::kill(parent, SIGKILL);
+  ::waitpid(parent, nullptr, 0);
+  pollfd wanted{ends[0], POLLIN, 0};
+  constexpr int kPatience = 10000;  // ms; the child's own limit is 60 s
+  EXPECT_EQ(::poll(&wanted, 1, kPatience), 1) << "the child lives on";
+  ::close(ends[0]);
 }
 
 TEST(ChildProcess, TooMuchOutputIsRefused) {

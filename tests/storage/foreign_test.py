@@ -119,11 +119,65 @@ def hdf5(folder, rng):
     refused(read(folder, rate + channels, folder / "text.h5"), "text.h5")
 
 
+def not_held(folder):
+    """Values that libhdf5 gives and the file does not hold are refused."""
+    one = "table: {format: hdf5}\ntime: {rate: 5}\nchannels: [{column: q, joint: I_MCP}]\n"
+    q = numpy.linspace(1.0, 2.0, 64)
+    path = folder / "q.h5"
+
+    def made(make, **settings):
+        with h5py.File(path, "w", **settings) as file:
+            make(file)
+        return read(folder, one, path)
+
+    def partly(file, rows, **settings):
+        file.create_dataset("q", (64,), "f8", chunks=(16,), **settings)[:rows] = q[:rows]
+
+    # Companions: what is held is read; compression that would not help is left out by libhdf5, chunk by chunk.
+    noise = numpy.frombuffer(numpy.random.default_rng(8).bytes(64 * 8), "u8").astype("u8") >> 1
+    for settings in ({"userblock_size": 512}, {}):
+        assert numpy.array_equal(values(made(lambda f: partly(f, 64), **settings))["q"][:, 0], q)
+        assert numpy.array_equal(values(made(lambda f: f.create_dataset("q", data=q), **settings))["q"][:, 0], q)
+    got = made(lambda f: f.create_dataset("q", data=noise, chunks=(16,), compression="gzip"))
+    assert numpy.array_equal(values(got)["q"][:, 0], noise.astype("f8"))
+
+    refused(made(lambda f: partly(f, 40)), "q.h5", "never written")
+    refused(made(lambda f: partly(f, 64, fletcher32=True) or f["q"].id.write_direct_chunk((16,), b"\0" * 128, 1)),
+            "q.h5", "without one of its filters")
+    refused(made(lambda f: f.create_dataset("q", (64,), "f8")), "q.h5", "never written")
+    layout = h5py.VirtualLayout((64,), "f8")
+    layout[:] = h5py.VirtualSource("missing.h5", "q", (64,))
+    refused(made(lambda f: f.create_virtual_dataset("q", layout)), "q.h5", "in other datasets")
+    q.tofile(folder / "q.raw")
+    refused(made(lambda f: f.create_dataset("q", (64,), "f8", external=[(str(folder / "q.raw"), 0, 512)])),
+            "q.h5", "in other files")
+    with h5py.File(folder / "other.h5", "w") as file:
+        file["q"] = q
+    refused(made(lambda f: f.__setitem__("q", h5py.ExternalLink("other.h5", "q"))), "q.h5")
+
+    # The address of a chunk, and of contiguous values, moved behind the end of the file.
+    def shifted(file):  # to an address that is found once
+        file["p"] = numpy.zeros(999, "i1")
+        file["q"] = q
+
+    for make in (lambda f: partly(f, 64, fletcher32=True), shifted):
+        made(make)
+        with h5py.File(path, "r") as file:
+            at = file["q"].id.get_offset() if file["q"].chunks is None else file["q"].id.get_chunk_info(3).byte_offset
+        data = path.read_bytes()
+        address = at.to_bytes(8, "little")
+        assert data.count(address) == 1
+        for end in (len(data), len(data) + 4096):
+            path.write_bytes(data.replace(address, (end - 16).to_bytes(8, "little")))
+            refused(read(folder, one, path), "q.h5", "beyond the end of the file")
+
+
 def main():
     rng = numpy.random.default_rng(3)
     with tempfile.TemporaryDirectory() as name:
         matlab(pathlib.Path(name), rng)
         hdf5(pathlib.Path(name), rng)
+        not_held(pathlib.Path(name))
 
 
 main()

@@ -50,6 +50,22 @@ TEST(TextFormat, TicksBracketsAndLabelsFromNameAndConstant) {
   EXPECT_EQ(motion.weight, 1.0);
 }
 
+TEST(TextFormat, ARecordingHasOneNameWhateverPathLedToIt) {
+  const TemporaryDirectory directory;
+  const auto source = parse_source(
+      "name: n\nrecordings: {files: '(?:.*/)?([a-z]+)/([^/]+)\\.txt', parts: [object, take]}\n"
+      "table: {format: text, columns: 3}\ntime: {column: '1'}\nlabels: {object: object}\n" +
+          kTwo,
+      "n.yaml");
+  spill(directory / "data/cup/one.txt", "0 1 2\n1 2 4\n");
+  for (const char* path : {"", "data", "data/cup", "data/cup/one.txt", "data/../data/cup/./one.txt"}) {
+    const auto found = read_source({directory / path}, source);
+    ASSERT_EQ(found.size(), 1U) << path;
+    EXPECT_EQ(found[0].demonstration.id, "cup_one") << path;
+    EXPECT_EQ(found[0].demonstration.labels.at("object"), "cup") << path;
+  }
+}
+
 TEST(TextFormat, DatesRunOverMidnightAndTheEndOfTheYear) {
   const std::string dates =
       "table: {format: text, columns: 7}\ntime: {date: ['1', '2', '3', '4', '5', '6']}\n"

@@ -28,6 +28,11 @@ TEST(WestR2g, AllRecordings) {
   for (const auto& [subject, count] : summary.recordings_per_label.at("subject")) EXPECT_EQ(count, 20) << subject;
   EXPECT_NEAR(summary.lowest_rate, 50.0, 1e-9);
   EXPECT_NEAR(summary.highest_rate, 50.0, 1e-9);
+  std::map<std::string, int> stuck;  // as the files themselves are
+  for (const auto& channel : summary.channels) {
+    if (channel.stuck_recordings > 0) stuck[channel.name] = channel.stuck_recordings;
+  }
+  EXPECT_EQ(stuck, (std::map<std::string, int>{{"W_PITCH", 1}, {"W_YAW", 2}}));
   for (const auto& [demonstration, report] : reading) {
     EXPECT_NEAR(report.trimmed_start + report.trimmed_end + 0.02 * (report.samples - 1), report.duration, 1e-9);
   }
