@@ -34,23 +34,25 @@ class KilledIngest(unittest.TestCase):
             lasts = time.monotonic() - begin
             chance = random.Random(12)
             killed = some = 0
-            for kill in range(KILLS):
+            while killed < KILLS:
                 store = folder / "store"
                 with start(*arguments, store) as program:
                     time.sleep(chance.uniform(0.0, lasts))
                     program.kill()
                     out, _ = program.communicate()
+                if program.returncode != -9:  # it had ended: the machine was busier when the time was taken
+                    self.assertEqual(program.returncode, 0)
+                    lasts *= 0.9
                 killed += program.returncode == -9
                 said = acknowledged(out)
                 some += 0 < said < RECORDINGS
                 self.check(store, said)
-                if kill % 10 == 0:
+                if killed % 10 == 0:
                     self.assertEqual(len(must(*arguments, store)["ids"]), RECORDINGS)
                     self.check(store, RECORDINGS)
                     self.assertEqual(run("verify", "--store", store)[0], 0)
                 shutil.rmtree(store, ignore_errors=True)
-            print(f"{killed} of {KILLS} killed, {some} of them between the first and the last batch")
-            self.assertGreater(killed, KILLS // 2)
+            print(f"{killed} killed, {some} of them between the first and the last batch")
             self.assertGreater(some, KILLS // 10)
 
     def check(self, store, said):
