@@ -55,6 +55,6 @@ if [ "$part" = all ] || [ "$part" = sanitize ]; then
 fi
 if [ "$part" = all ] || [ "$part" = fuzz ]; then
   configure_and_build fuzz
-  run_fuzzers "${2:-10}"
+  run_fuzzers "${2:-5}"
 fi
 say "All tests passed"
