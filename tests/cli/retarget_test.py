@@ -50,7 +50,7 @@ class Retarget(unittest.TestCase):
         data_set(lacking, {"one": [HEADER.replace("I_PIP", "other"), *rows()]})
         source = self.folder / "source.yaml"
         text = (SOURCE / "models/sources/west_r2g.yaml").read_text()
-        source.write_text("\n".join(line for line in text.splitlines() if "column: I_PIP" not in line) + "\n")
+        source.write_text("\n".join(line for line in text.splitlines() if "column: I_PIP" not in line) + "\nignore: [other]\n")
         must("ingest", lacking, "--source", source, "--store", self.store)
         code, out, said = run("retarget", "--store", self.store, "--json")
         self.assertEqual(code, 0, said)
