@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The opponens authors
 # SPDX-License-Identifier: BSD-3-Clause
 """What `ingest` has said to be committed survives its being killed, whenever that is."""
+import os
 import pathlib
 import random
 import re
@@ -13,7 +14,7 @@ from support import HEADER, data_set, must, rows, run, start
 
 SOURCE_YAML = "models/sources/west_r2g.yaml"
 RECORDINGS = 1100  # five batches
-KILLS = 100
+KILLS = int(os.environ.get("OPPONENS_KILLS", 50))
 
 
 def acknowledged(out):
