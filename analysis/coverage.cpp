@@ -60,16 +60,6 @@ class LeaveOneOut {
   std::vector<Walls> walls_;
 };
 
-void check(const std::vector<Cluster>& clusters, const CoverageSettings& settings) {
-  require(!clusters.empty(), "box_coverage: no clusters");
-  for (const Cluster& cluster : clusters) {
-    require(cluster.samples.size() == cluster.weights.size() && !cluster.samples.empty(),
-            "box_coverage: a cluster without samples, or without a weight for each");
-    require(cluster.statistics.mean.size() == settings.resolution.size(),
-            "box_coverage: resolution and samples differ in size");
-  }
-}
-
 }  // namespace
 
 void add(Tally& sum, const Tally& part) {
@@ -139,26 +129,6 @@ BoxCoverage coverage_of(const Walls& all, const std::vector<Tally>& in_sample, c
   result.full.interval = ratio_interval(full, total, settings.replicates, settings.confidence, rng);
   result.kept.interval = ratio_interval(kept, total, settings.replicates, settings.confidence, rng);
   return result;
-}
-
-BoxCoverage box_coverage(const std::vector<Cluster>& clusters, const CoverageSettings& settings, Rng& rng) {
-  check(clusters, settings);
-  std::vector<SampleStatistics> statistics;
-  for (const Cluster& cluster : clusters) statistics.push_back(cluster.statistics);
-  const Walls all = make_walls(pooled(statistics), settings);
-  std::vector<Walls> others;
-  if (clusters.size() > 1) others = held_out_walls(statistics, settings, 1);
-  std::vector<Tally> in_sample(clusters.size());
-  std::vector<Tally> held_out(others.size());
-  for (std::size_t c = 0; c < clusters.size(); ++c) {
-    for (std::size_t part = 0; part < clusters[c].samples.size(); ++part) {
-      const Eigen::MatrixXd& x = clusters[c].samples[part];
-      const double weight = clusters[c].weights[part];
-      add(in_sample[c], count_inside(all, x, weight));
-      if (!others.empty()) add(held_out[c], count_inside(others[c], x, weight));
-    }
-  }
-  return coverage_of(all, in_sample, held_out, settings, rng);
 }
 
 }  // namespace opponens::analysis

@@ -13,13 +13,6 @@
 
 namespace opponens::analysis {
 
-/// What a cluster (a subject, or a recording) adds to a group.
-struct Cluster {
-  SampleStatistics statistics;           ///< scaled space
-  std::vector<Eigen::MatrixXd> samples;  ///< each [T x n] scaled, row = sample
-  std::vector<double> weights;           ///< of the samples of each matrix
-};
-
 /// Share of the samples inside, beside what a normal distribution would give.
 struct Coverage {
   double in_sample = 0.0;
@@ -42,7 +35,9 @@ struct CoverageSettings {
   double confidence = 0.95;    ///< of the interval
 };
 
-/// What counts as inside: all n axes of one basis, and how far along each.
+/// What counts as inside: all n axes of one basis, and how far along each: |y| <= max(half width, tolerance) with
+/// tolerance = sqrt(sum_j u_j^2 r_j^2), one sensor resolution along axis u; an axis of zero width would otherwise
+/// exclude every sample for its rounding.
 struct Walls {
   Eigen::VectorXd mean;   ///< [n]
   Eigen::MatrixXd axes;   ///< [n x n] orthonormal columns
@@ -62,8 +57,8 @@ void add(Tally& sum, const Tally& part);
 
 Walls make_walls(const SampleStatistics& statistics, const CoverageSettings& settings);
 
-/// For each of at least two clusters the walls of all others, merged in a fixed tree: O(c (log c n^2 + n^3)) on the
-/// given number of threads, on which the result does not depend.
+/// For each of at least two clusters the walls of all others (mean, axes, k, effective dof and widths are theirs),
+/// merged in a fixed tree: O(c (log c n^2 + n^3)) on the given number of threads, on which the result does not depend.
 std::vector<Walls> held_out_walls(const std::vector<SampleStatistics>& clusters, const CoverageSettings& settings,
                                   int threads);
 
@@ -73,11 +68,5 @@ Tally count_inside(const Walls& walls, const Eigen::Ref<const Eigen::MatrixXd>& 
 /// Coverage from counts per cluster. held_out: empty with a single cluster. all: the walls of all samples.
 BoxCoverage coverage_of(const Walls& all, const std::vector<Tally>& in_sample, const std::vector<Tally>& held_out,
                         const CoverageSettings& settings, Rng& rng);
-
-/// Coverage in sample and held out. A coordinate counts as inside axis u when |y| <= max(half width, tolerance) with
-/// tolerance = sqrt(sum_j u_j^2 r_j^2), one sensor resolution along the axis: an axis of zero width would otherwise
-/// exclude every sample for its rounding. Held out: mean, axes, k, effective dof and widths are those of the other
-/// clusters. Cost O(samples n^2 + clusters (log clusters n^2 + n^3)).
-BoxCoverage box_coverage(const std::vector<Cluster>& clusters, const CoverageSettings& settings, Rng& rng);
 
 }  // namespace opponens::analysis

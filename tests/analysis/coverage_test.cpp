@@ -13,6 +13,32 @@
 namespace opponens::analysis {
 namespace {
 
+struct Cluster {
+  SampleStatistics statistics;
+  std::vector<Eigen::MatrixXd> samples;
+  std::vector<double> weights;  // of the samples of each matrix
+};
+
+/// What analyze() does with the clusters of a group, of samples in memory.
+BoxCoverage box_coverage(const std::vector<Cluster>& clusters, const CoverageSettings& settings, Rng& rng) {
+  std::vector<SampleStatistics> statistics;
+  for (const Cluster& cluster : clusters) statistics.push_back(cluster.statistics);
+  const Walls all = make_walls(pooled(statistics), settings);
+  std::vector<Walls> others;
+  if (clusters.size() > 1) others = held_out_walls(statistics, settings, 1);
+  std::vector<Tally> in_sample(clusters.size());
+  std::vector<Tally> held_out(others.size());
+  for (std::size_t c = 0; c < clusters.size(); ++c) {
+    for (std::size_t part = 0; part < clusters[c].samples.size(); ++part) {
+      const Eigen::MatrixXd& x = clusters[c].samples[part];
+      const double weight = clusters[c].weights[part];
+      add(in_sample[c], count_inside(all, x, weight));
+      if (!others.empty()) add(held_out[c], count_inside(others[c], x, weight));
+    }
+  }
+  return coverage_of(all, in_sample, held_out, settings, rng);
+}
+
 std::vector<Cluster> clusters_of(const std::vector<Eigen::MatrixXd>& samples) {
   std::vector<Cluster> clusters;
   for (const Eigen::MatrixXd& part : samples) clusters.push_back({moments(part), {part}, {1.0}});
