@@ -12,6 +12,7 @@
 #include "core/rng.hpp"
 #include "robot/load_robot.hpp"
 #include "robot/retarget.hpp"
+#include "tests/robot/swinging_hand.hpp"
 
 namespace {
 
@@ -27,23 +28,8 @@ struct Hands {
   robot::HandAlignment alignment = robot::align_hands(human, hand, mapping).value();
 };
 
-/// The human hand swings through the middle of its ranges, every joint with its own phase.
-Demonstration swing(const robot::RobotModel& human) {
-  Demonstration recording;
-  recording.id = "swing";
-  recording.joint_names = human.joint_names();
-  recording.time = Eigen::VectorXd::LinSpaced(kSamples, 0.0, 0.02 * (kSamples - 1));
-  recording.q_h.resize(kSamples, human.dof());
-  Rng rng(21);
-  for (int i = 0; i < human.dof(); ++i) {
-    const double phase = rng.uniform(0.0, 2.0 * std::numbers::pi);
-    for (int t = 0; t < kSamples; ++t) {
-      const double share = 0.45 + 0.25 * std::sin(phase + 4.0 * t / kSamples);
-      recording.q_h(t, i) = human.lower()[i] + share * (human.upper()[i] - human.lower()[i]);
-    }
-  }
-  return recording;
-}
+/// The human hand swings through the middle of its ranges.
+Demonstration swing(const robot::RobotModel& human) { return robot::swing(human, 0.2, 0.7, kSamples); }
 
 void whole_recording_sparse(benchmark::State& state) {
   const Hands hands;
