@@ -130,12 +130,6 @@ Json transition_json(const analysis::TransitionReport& found, analysis::Transiti
           {"error_fraction", number(likeness ? found.likeness_error : found.changepoint_error)}};
 }
 
-std::vector<const SynergyGroup*> groups_in_order(const SynergySet& set) {
-  std::vector<const SynergyGroup*> groups = {&set.pre_grasp};
-  for (const auto& group : set.grasp) groups.push_back(&group);
-  return groups;
-}
-
 /// The result document; the transitions of the rule in force come first.
 Json analysis_json(const Analysis& found, const AnalysisSettings& settings) {
   Json result = document("analyze");
@@ -195,10 +189,7 @@ int analyze(const AnalyzeOptions& options, const Console& console) {
   const analysis::RecordingSource source{
       inputs.size(), [&](std::size_t i) { return storage::decode_demonstration(store.read(inputs[i])); }};
   Progress progress(console, "analyze: recordings, each read twice");
-  const auto found = analysis::analyze(source, settings, {threads, [&](std::size_t done, std::size_t total) {
-                                                            progress.update(static_cast<std::int64_t>(done),
-                                                                            static_cast<std::int64_t>(total));
-                                                          }});
+  const auto found = analysis::analyze(source, settings, {threads, progress.counter()});
   if (!found) {
     Console::warn(found.error().detail);
     return found.error().code == FailureCode::invalid_input ? kInvalid : kNoAnswer;

@@ -10,19 +10,12 @@
 #include "cli/json.hpp"
 #include "cli/stored.hpp"
 #include "core/require.hpp"
-#include "storage/codec.hpp"
 
 namespace opponens::cli {
 namespace {
 
 Stored<SynergySet> synergies(const storage::Store& store, const std::string& id) {
-  if (id.empty()) return newest_synergies(store);
-  storage::Record record = store.read(id);
-  if (record.kind != kSynergySet && record.kind != kFirstOrderSynergies) {
-    throw InputError(id + ": is a " + record.kind + ", no synergy set");
-  }
-  SynergySet value = storage::decode_synergy_set(record);
-  return {storage::content_hash(record), std::move(record), std::move(value)};
+  return id.empty() ? newest_synergies(store) : synergies_of(store, id);
 }
 
 /// The ids of the two sets; empty: the newest of its store.

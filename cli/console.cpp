@@ -56,6 +56,12 @@ Progress::~Progress() {
   if (drawn_) std::fprintf(stderr, "\r\033[K");
 }
 
+std::function<void(std::size_t, std::size_t)> Progress::counter() {
+  return [this](std::size_t done, std::size_t total) {
+    update(static_cast<std::int64_t>(done), static_cast<std::int64_t>(total));
+  };
+}
+
 void Progress::update(std::int64_t done, std::int64_t total) {
   if (interrupt_requested) throw Interrupted();
   const auto now = std::chrono::steady_clock::now();

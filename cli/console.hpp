@@ -4,7 +4,9 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -53,6 +55,8 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
   void update(std::int64_t done, std::int64_t total);
+  /// update() in the form in which libraries tell how far they are; not to outlive this object.
+  std::function<void(std::size_t, std::size_t)> counter();
 
  private:
   std::string label_;

@@ -46,9 +46,7 @@ int export_file(const storage::Store& store, const ExportOptions& options, const
   const storage::Closure closure = storage::closure_of(store, ids);
   {
     Progress progress(console, "export");
-    storage::export_single_file(store, closure.objects, options.single_file, [&](std::size_t done, std::size_t total) {
-      progress.update(static_cast<std::int64_t>(done), static_cast<std::int64_t>(total));
-    });
+    storage::export_single_file(store, closure.objects, options.single_file, progress.counter());
   }
   for (const auto& id : closure.missing) {
     console.advise("made from " + id + ", which is not in the store, so not in the file");

@@ -124,8 +124,7 @@ void TableFolder::add(const std::string& id, const storage::Record& record) {
     return;
   }
   const SynergySet set = storage::decode_synergy_set(record);
-  std::vector<const SynergyGroup*> groups{&set.pre_grasp};
-  for (const auto& group : set.grasp) groups.push_back(&group);
+  const std::vector<const SynergyGroup*> groups = groups_in_order(set);
   for (std::size_t i = 0; i < groups.size(); ++i) {
     if (groups[i]->basis.mean.size() == 0) continue;  // a set without phases has no pre-grasp group
     about["label.group"] = groups[i]->name;

@@ -9,12 +9,6 @@
 namespace opponens::cli {
 namespace {
 
-storage::Step shown_by(Progress& progress) {
-  return [&progress](std::size_t done, std::size_t total) {
-    progress.update(static_cast<std::int64_t>(done), static_cast<std::int64_t>(total));
-  };
-}
-
 void require_another(const std::filesystem::path& from, const std::filesystem::path& target) {
   std::error_code error;
   if (std::filesystem::equivalent(from, target, error)) {
@@ -29,7 +23,7 @@ int merge(const MergeOptions& options, const Console& console) {
   for (const auto& path : options.stores) {
     require_another(path, options.common.store);
     sources.emplace_back(path, false);
-    sources.back().list();  // a damaged one is refused before anything is written
+    sources.back().list();  // one that lacks files is refused before anything is written
   }
   storage::Store target(options.common.store, true);
   const RunLog log(target, "merge", 1);
@@ -37,7 +31,7 @@ int merge(const MergeOptions& options, const Console& console) {
   Json parts = Json::array();
   for (const auto& source : sources) {
     Progress progress(console, "merge " + source.directory().string());
-    const std::vector<std::string> ids = storage::merge_store(source, target, shown_by(progress));
+    const std::vector<std::string> ids = storage::merge_store(source, target, progress.counter());
     const std::size_t objects = source.list().size();
     console.say(source.directory().string() + ": " + std::to_string(ids.size()) + " of " + std::to_string(objects) +
                 " objects were new");
@@ -68,7 +62,7 @@ int ingest_single_files(const IngestOptions& options, const Console& console) {
   std::vector<std::string> ids;
   for (const auto& path : options.paths) {
     Progress progress(console, "ingest " + path.string());
-    const auto taken = storage::import_single_file(path, store, shown_by(progress));
+    const auto taken = storage::import_single_file(path, store, progress.counter());
     ids.insert(ids.end(), taken.begin(), taken.end());
   }
   log.finish(ids);

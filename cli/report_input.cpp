@@ -115,12 +115,11 @@ SynergyPart synergy_part(const Stored<SynergySet>& synergies, const Json& found)
   part.joint_names = synergies.value.joint_names;
   part.grouped_by = parameters.at("group_by");
   part.box_root = parameters.at("box_root");
-  std::vector<SynergyGroup> groups = {synergies.value.pre_grasp};
-  groups.insert(groups.end(), synergies.value.grasp.begin(), synergies.value.grasp.end());
+  const std::vector<const SynergyGroup*> groups = groups_in_order(synergies.value);
   for (std::size_t i = 0; i < groups.size(); ++i) {
     const Json& json = found.at("groups").at(i);
     SynergyItem item;
-    item.group = groups[i];
+    item.group = *groups[i];
     item.samples = json.at("samples");
     item.cluster = json.at("cluster");
     const Json& intervals = json.at("cumulative_variance_interval");

@@ -117,12 +117,25 @@ std::vector<storage::IndexEntry> made_from(const storage::Store& store, const ch
   return entries;
 }
 
+Stored<SynergySet> synergies_of(const storage::Store& store, const std::string& id) {
+  storage::Record record = store.read(id);
+  if (record.kind != kSynergySet && record.kind != kFirstOrderSynergies) {
+    throw InputError(id + ": is a " + record.kind + ", no synergy set");
+  }
+  SynergySet value = storage::decode_synergy_set(record);
+  return {store.find(id).id, std::move(record), std::move(value)};
+}
+
+std::vector<const SynergyGroup*> groups_in_order(const SynergySet& set) {
+  std::vector<const SynergyGroup*> groups = {&set.pre_grasp};
+  for (const auto& group : set.grasp) groups.push_back(&group);
+  return groups;
+}
+
 Stored<SynergySet> newest_synergies(const storage::Store& store) {
   const auto id = newest(store, kSynergySet);
   if (!id) throw InputError(store.directory().string() + ": no synergies yet; run: opponens analyze");
-  storage::Record record = store.read(*id);
-  SynergySet value = storage::decode_synergy_set(record);
-  return {*id, std::move(record), std::move(value)};
+  return synergies_of(store, *id);
 }
 
 const SynergyGroup& group_named(const SynergySet& set, const std::string& name) {

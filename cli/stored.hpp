@@ -51,7 +51,8 @@ struct MotionEntries {
 };
 MotionEntries newest_motions(const storage::Store& store, const char* kind);
 
-/// The same, all read. Motions by source and recording: of several with the same label "source" and the same id, the newest.
+/// The same, all read. Motions by source and recording: of several with the same label "source" and the same id, the
+/// newest.
 struct Motions {
   std::vector<Stored<Demonstration>> newest;  ///< in the order in which the first of each was stored
   int superseded = 0;                         ///< older ones left out
@@ -67,6 +68,10 @@ std::optional<std::string> newest(const storage::Store& store, const char* kind)
 /// The objects of a kind that were made from any of the given objects, the newest first.
 std::vector<storage::IndexEntry> made_from(const storage::Store& store, const char* kind,
                                            const std::set<std::string>& inputs);
+/// A synergy set of either order. Throws InputError when the object is none.
+Stored<SynergySet> synergies_of(const storage::Store& store, const std::string& id);
+/// The pre-grasp (or the pool of all groups), then the groups.
+std::vector<const SynergyGroup*> groups_in_order(const SynergySet& set);
 /// The newest synergy set. Throws InputError saying which command makes one when there is none.
 Stored<SynergySet> newest_synergies(const storage::Store& store);
 /// The grasp-phase group of that name. Throws InputError when the set has none: a grasp names its group.
