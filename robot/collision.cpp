@@ -3,250 +3,239 @@
 #include "robot/collision.hpp"
 
 #include <algorithm>
-#include <functional>
+#include <array>
 #include <limits>
-#include <map>
 #include <set>
 
 #include "core/require.hpp"
-#include "robot/narrow_phase.hpp"
+#include "robot/collision_world.hpp"
+#include "robot/wide_world.hpp"
 
 namespace opponens::robot {
 
 namespace {
 
-/// m. Bounding volumes must be further apart than this to settle a pair: above the tolerance of FCL's tests (1e-6), so
-/// that the verdict is the narrow phase's, with or without them.
-constexpr double kCullMargin = 2e-6;
-
-/// One geometry of a link or of a scene body.
-struct Part {
-  CollisionShape shape;
-  int body;                ///< link index, or scene body index
-  Eigen::Isometry3d X_BG;  ///< scene: X_WG
-};
-
-/// Where a part is now.
-struct Placed {
-  Eigen::Isometry3d X_WG;
-  OrientedBox box;
-};
-
-Placed place(const CollisionShape& shape, const Eigen::Isometry3d& X_WG) {
-  return {X_WG, {X_WG * shape.center(), X_WG.linear(), shape.half_extents()}};
-}
-
-/// Whether bounding volumes alone show two parts to be apart: spheres, sphere and box, boxes; cheapest first.
-bool culled(const CollisionShape& a, const Placed& at_a, const CollisionShape& b, const Placed& at_b) {
-  const double reach = a.radius() + b.radius() + kCullMargin;
-  if ((at_a.box.center - at_b.box.center).squaredNorm() > reach * reach) return true;
-  if (point_box_distance(at_a.box.center, at_b.box) > a.radius() + kCullMargin) return true;
-  if (point_box_distance(at_b.box.center, at_a.box) > b.radius() + kCullMargin) return true;
-  return boxes_apart(at_a.box, at_b.box, kCullMargin);
-}
-
-/// Lower bound of the distance of two parts, m.
-double distance_bound(const CollisionShape& a, const Placed& at_a, const CollisionShape& b, const Placed& at_b) {
-  return std::max({(at_a.box.center - at_b.box.center).norm() - a.radius() - b.radius(),
-                   point_box_distance(at_a.box.center, at_b.box) - a.radius(),
-                   point_box_distance(at_b.box.center, at_a.box) - b.radius(), 0.0});
-}
-
-/// Makes each distinct mesh once; fingers share theirs.
-class ShapeCache {
- public:
-  CollisionShape get(const Shape& shape) {
-    const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&shape);
-    if (mesh == nullptr) return CollisionShape(shape);
-    const auto found = known_.find(mesh->get());
-    if (found != known_.end()) return found->second;
-    return known_.emplace(mesh->get(), CollisionShape(shape)).first->second;
+/// A pose as the sweep takes it.
+std::array<float, 12> wide_pose(const Eigen::Isometry3d& X) {
+  std::array<float, 12> pose;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) pose[static_cast<std::size_t>(3 * i + j)] = static_cast<float>(X.linear()(i, j));
+    pose[static_cast<std::size_t>(9 + i)] = static_cast<float>(X.translation()[i]);
   }
+  return pose;
+}
 
- private:
-  std::map<const TriangleMesh*, CollisionShape> known_;
-};
+/// Rows [first, first + count) of a batch; idle lanes repeat the last.
+wide::Query wide_query(const ConfigurationBatch& batch, int first, int count, const std::array<float, 12>& root) {
+  wide::Query query{{}, (1U << count) - 1U, root.data()};
+  for (int lane = 0; lane < wide::kLanes; ++lane) {
+    query.q[lane] = batch.row(first + std::min(lane, count - 1)).data();
+  }
+  return query;
+}
+
+bool too_large(const Eigen::Ref<const Eigen::VectorXd>& q) {
+  return q.size() > 0 && q.cwiseAbs().maxCoeff() > wide::World::kLargestPosition;
+}
 
 }  // namespace
 
 struct CollisionChecker::World {
-  RobotModel robot;
-  Eigen::Isometry3d X_WR;
-  std::vector<std::string> body_names;
-  std::vector<Part> links;   ///< parts of the robot, most distal link first
-  std::vector<Part> bodies;  ///< parts of the scene
-  std::vector<Placed> bodies_at;
-  std::vector<std::vector<int>> against;  ///< per link part: scene parts to check
-  std::vector<std::pair<int, int>> self;  ///< link parts to check, most distal first
+  CollisionWorld exact;
+  wide::World fixed;   ///< the robot's root where the scene puts it
+  wide::World flying;  ///< anywhere
+  bool portable;
+  bool constant_collision = false;       ///< of what no joint moves, the scene included
+  bool constant_self_collision = false;  ///< of the robot with itself
 
-  World(const RobotModel& model, const Scene& scene, const std::vector<BodyPair>& touching);
-
-  std::vector<Placed> place_links(const Eigen::Isometry3d& X_WR_now, const Eigen::Ref<const Eigen::VectorXd>& q) const;
-
-  const std::string& link_name(int part) const {
-    return robot.links()[static_cast<std::size_t>(links[static_cast<std::size_t>(part)].body)].name;
-  }
-  BodyPair scene_pair(std::size_t link_part, int body_part) const {
-    return {link_name(static_cast<int>(link_part)),
-            body_names[static_cast<std::size_t>(bodies[static_cast<std::size_t>(body_part)].body)]};
-  }
-  BodyPair self_pair(const std::pair<int, int>& parts) const {
-    BodyPair pair{link_name(parts.first), link_name(parts.second)};
-    if (pair.second < pair.first) std::swap(pair.first, pair.second);
-    return pair;
+  World(const RobotModel& robot, const Scene& scene, const std::vector<BodyPair>& touching,
+        const CollisionSettings& settings)
+      : exact(robot, scene, touching), fixed(exact, true), flying(exact, false), portable(settings.portable) {
+    const Eigen::VectorXd zero = Eigen::VectorXd::Zero(robot.dof());
+    Placement placement(exact, exact.X_WR, zero);
+    for (const auto& [a, b] : fixed.constant_pairs()) {
+      if (!placement.collide(a, b)) continue;
+      constant_collision = true;
+      constant_self_collision = constant_self_collision || !exact.of_scene(b);
+    }
   }
 
-  /// Calls visit(a, at_a, b, at_b, name) for every pair of parts to check, where name() makes the pair's names; ends
-  /// when visit returns true, and returns whether it did.
-  template <typename Visit>
-  bool any_pair(const std::vector<Placed>& at, const Visit& visit) const {
-    for (std::size_t i = 0; i < links.size(); ++i) {
-      for (const int body : against[i]) {
-        const auto j = static_cast<std::size_t>(body);
-        if (visit(links[i].shape, at[i], bodies[j].shape, bodies_at[j], [&] { return scene_pair(i, body); })) {
-          return true;
-        }
+  void require_configuration(const Eigen::Ref<const Eigen::VectorXd>& q) const {
+    require(q.size() == exact.robot.dof(), [&] {
+      return "CollisionChecker: q has " + std::to_string(q.size()) + " entries, the robot " +
+             std::to_string(exact.robot.dof());
+    });
+    require(q.allFinite(), "CollisionChecker: q is not finite");
+  }
+
+  void require_batch(const ConfigurationBatch& batch) const {
+    require(batch.cols() == exact.robot.dof() && batch.allFinite(),
+            "CollisionChecker: a batch needs one finite number for each joint");
+    require(batch.size() == 0 || batch.cwiseAbs().maxCoeff() <= wide::World::kLargestPosition,
+            "CollisionChecker: a joint position of a batch is beyond 10,000");
+  }
+
+  bool exact_free(const Eigen::Isometry3d& X_WR, const Eigen::Ref<const Eigen::VectorXd>& q) const {
+    Placement placement(exact, X_WR, q);
+    for (int i = 0; i < exact.robot_parts; ++i) {
+      for (const int j : exact.partners[static_cast<std::size_t>(i)]) {
+        if (placement.collide(i, j)) return false;
       }
     }
-    for (const std::pair<int, int>& parts : self) {
-      const auto i = static_cast<std::size_t>(parts.first);
-      const auto j = static_cast<std::size_t>(parts.second);
-      if (visit(links[i].shape, at[i], links[j].shape, at[j], [&] { return self_pair(parts); })) return true;
+    return true;
+  }
+
+  /// Whether no unknown pair of a lane collides.
+  bool settle(const std::vector<wide::Unknown>& unknown, unsigned lane, const Eigen::Isometry3d& X_WR,
+              const Eigen::Ref<const Eigen::VectorXd>& q, std::int64_t& asked) const {
+    const auto concerns = [lane](const wide::Unknown& pair) { return (pair.lanes >> lane & 1U) != 0; };
+    if (std::none_of(unknown.begin(), unknown.end(), concerns)) return true;
+    Placement placement(exact, X_WR, q);
+    for (const wide::Unknown& pair : unknown) {
+      if (!concerns(pair)) continue;
+      ++asked;
+      if (placement.collide(pair.a, pair.b)) return false;
     }
-    return false;
+    return true;
   }
 
-  bool free(const std::vector<Placed>& at) const {
-    return !any_pair(at, [](const auto& a, const auto& at_a, const auto& b, const auto& at_b, const auto&) {
-      return !culled(a, at_a, b, at_b) && intersect(a, at_a.X_WG, b, at_b.X_WG);
-    });
+  /// Asks for rows [first, first + count) of a batch at once, count <= kLanes. Calls verdict(row, free) for each in
+  /// turn until it returns true.
+  template <typename Verdict>
+  void sweep_rows(const ConfigurationBatch& batch, int first, int count, const Verdict& verdict,
+                  CollisionCounts& counts) const {
+    static const std::array<float, 12> kUsual = wide_pose(Eigen::Isometry3d::Identity());
+    thread_local std::vector<wide::Unknown> unknown;
+    fixed.sweep(wide_query(batch, first, count, kUsual), unknown, portable);
+    counts.configurations += count;
+    for (int row = first; row < first + count; ++row) {
+      const Eigen::Map<const Eigen::VectorXd> q(batch.row(row).data(), batch.cols());
+      const auto lane = static_cast<unsigned>(row - first);
+      if (verdict(row, !constant_collision && settle(unknown, lane, exact.X_WR, q, counts.pairs))) return;
+    }
   }
 
-  std::vector<BodyPair> colliding_pairs(const std::vector<Placed>& at) const {
-    std::set<BodyPair> pairs;
-    any_pair(at, [&pairs](const auto& a, const auto& at_a, const auto& b, const auto& at_b, const auto& name) {
-      if (!culled(a, at_a, b, at_b) && intersect(a, at_a.X_WG, b, at_b.X_WG)) pairs.insert(name());
-      return false;
-    });
-    return {pairs.begin(), pairs.end()};
+  /// Sweeps a whole batch so.
+  template <typename Verdict>
+  void sweep_batch(const ConfigurationBatch& batch, const Verdict& verdict, CollisionCounts& counts) const {
+    require_batch(batch);
+    bool ended = false;
+    for (int first = 0; first < batch.rows() && !ended; first += wide::kLanes) {
+      const int count = std::min(wide::kLanes, static_cast<int>(batch.rows()) - first);
+      sweep_rows(
+          batch, first, count, [&](int row, bool free) { return ended = verdict(row, free); }, counts);
+    }
   }
-
-  Clearance clearance(const std::vector<Placed>& at) const;
 };
 
-CollisionChecker::World::World(const RobotModel& model, const Scene& scene, const std::vector<BodyPair>& touching)
-    : robot(model), X_WR(scene.X_WR) {
-  std::set<BodyPair> excluded;
-  std::set<std::string> known;
-  for (const SceneBody& body : scene.bodies) known.insert(body.name);
-  for (const Link& link : robot.links()) known.insert(link.name);
-  for (const BodyPair& pair : touching) {
-    for (const std::string& name : {pair.first, pair.second}) {
-      require(known.count(name) == 1,
-              [&] { return "CollisionChecker: touching names '" + name + "', which is absent"; });
-    }
-    excluded.insert(pair);
-    excluded.emplace(pair.second, pair.first);
-  }
-  ShapeCache cache;
-  for (std::size_t l = robot.links().size(); l-- > 0;) {
-    for (const Geometry& g : robot.links()[l].collision) {
-      links.push_back({cache.get(g.shape), static_cast<int>(l), g.X_BG});
-    }
-  }
-  for (const SceneBody& body : scene.bodies) {
-    for (const Geometry& g : body.geometry) {
-      bodies.push_back({cache.get(g.shape), static_cast<int>(body_names.size()), body.X_WB * g.X_BG});
-      bodies_at.push_back(place(bodies.back().shape, bodies.back().X_BG));
-    }
-    body_names.push_back(body.name);
-  }
-  against.resize(links.size());
-  for (std::size_t i = 0; i < links.size(); ++i) {
-    for (int j = 0; j < static_cast<int>(bodies.size()); ++j) {
-      if (excluded.count(scene_pair(i, j)) == 0) against[i].push_back(j);
-    }
-    for (std::size_t j = i + 1; j < links.size(); ++j) {
-      const std::pair<int, int> bodies_of = std::minmax(links[i].body, links[j].body);
-      const std::pair<int, int> parts(static_cast<int>(i), static_cast<int>(j));
-      if (bodies_of.first == bodies_of.second || robot.description().allowed_collisions.count(bodies_of) == 1) continue;
-      if (excluded.count(self_pair(parts)) == 0) self.push_back(parts);
-    }
-  }
+CollisionChecker::CollisionChecker(const RobotModel& robot, const Scene& scene, std::vector<BodyPair> touching,
+                                   const CollisionSettings& settings)
+    : world_(std::make_unique<const World>(robot, scene, touching, settings)) {}
+CollisionChecker::~CollisionChecker() = default;
+CollisionChecker::CollisionChecker(CollisionChecker&&) noexcept = default;
+CollisionChecker& CollisionChecker::operator=(CollisionChecker&&) noexcept = default;
+
+bool CollisionChecker::free(const Eigen::Ref<const Eigen::VectorXd>& q) const {
+  world_->require_configuration(q);
+  if (too_large(q)) return exact_free(q);
+  bool free = false;
+  CollisionCounts counts;
+  world_->sweep_rows(
+      q.transpose(), 0, 1, [&](int, bool verdict) { return free = verdict; }, counts);
+  return free;
 }
 
-std::vector<Placed> CollisionChecker::World::place_links(const Eigen::Isometry3d& X_WR_now,
-                                                         const Eigen::Ref<const Eigen::VectorXd>& q) const {
-  require(q.size() == robot.dof(), [&] {
-    return "CollisionChecker: q has " + std::to_string(q.size()) + " entries, the robot " + std::to_string(robot.dof());
-  });
-  require(q.allFinite(), "CollisionChecker: q is not finite");
-  const std::vector<Eigen::Isometry3d> X_RL = robot.link_poses(q);
-  std::vector<Placed> at;
-  at.reserve(links.size());
-  for (const Part& part : links) {
-    at.push_back(place(part.shape, X_WR_now * X_RL[static_cast<std::size_t>(part.body)] * part.X_BG));
-  }
-  return at;
+bool CollisionChecker::free(const Eigen::Isometry3d& X_WR, const Eigen::Ref<const Eigen::VectorXd>& q) const {
+  const World& w = *world_;
+  w.require_configuration(q);
+  const Eigen::Isometry3d X_SR = w.exact.X_WR.inverse() * X_WR;
+  if (too_large(q) || !w.flying.reaches(X_SR)) return w.exact_free(X_WR, q);
+  const std::array<float, 12> root = wide_pose(X_SR);
+  const ConfigurationBatch row = q.transpose();
+  thread_local std::vector<wide::Unknown> unknown;
+  w.flying.sweep(wide_query(row, 0, 1, root), unknown, w.portable);
+  std::int64_t asked = 0;
+  return !w.constant_self_collision && w.settle(unknown, 0, X_WR, q, asked);
 }
 
-CollisionChecker::Clearance CollisionChecker::World::clearance(const std::vector<Placed>& at) const {
+std::vector<bool> CollisionChecker::free_rows(const ConfigurationBatch& batch, CollisionCounts* counts) const {
+  std::vector<bool> verdicts;
+  CollisionCounts own;
+  const auto keep = [&](int, bool free) {
+    verdicts.push_back(free);
+    return false;
+  };
+  world_->sweep_batch(batch, keep, counts != nullptr ? *counts : own);
+  return verdicts;
+}
+
+std::optional<int> CollisionChecker::first_colliding(const ConfigurationBatch& batch, CollisionCounts* counts) const {
+  std::optional<int> colliding;
+  CollisionCounts own;
+  const auto keep = [&](int row, bool free) {
+    if (!free) colliding = row;
+    return !free;
+  };
+  world_->sweep_batch(batch, keep, counts != nullptr ? *counts : own);
+  return colliding;
+}
+
+bool CollisionChecker::exact_free(const Eigen::Ref<const Eigen::VectorXd>& q) const {
+  world_->require_configuration(q);
+  return world_->exact_free(world_->exact.X_WR, q);
+}
+
+std::vector<BodyPair> CollisionChecker::colliding_pairs(const Eigen::Ref<const Eigen::VectorXd>& q) const {
+  return colliding_pairs(world_->exact.X_WR, q);
+}
+
+std::vector<BodyPair> CollisionChecker::colliding_pairs(const Eigen::Isometry3d& X_WR,
+                                                        const Eigen::Ref<const Eigen::VectorXd>& q) const {
+  world_->require_configuration(q);
+  const CollisionWorld& exact = world_->exact;
+  Placement placement(exact, X_WR, q);
+  std::set<BodyPair> pairs;
+  for (int i = 0; i < exact.robot_parts; ++i) {
+    for (const int j : exact.partners[static_cast<std::size_t>(i)]) {
+      if (placement.collide(i, j)) pairs.insert(exact.names_of(i, j));
+    }
+  }
+  return {pairs.begin(), pairs.end()};
+}
+
+CollisionChecker::Clearance CollisionChecker::clearance(const Eigen::Ref<const Eigen::VectorXd>& q) const {
+  world_->require_configuration(q);
   struct Candidate {
     double bound;
-    std::function<double()> distance;
-    BodyPair pair;
+    int a;
+    int b;
   };
+  const CollisionWorld& exact = world_->exact;
+  Placement placement(exact, exact.X_WR, q);
   // Nearest bounds first, so that few exact distances are needed. Equal bounds stay in the order of the pairs.
   std::vector<Candidate> candidates;
-  any_pair(at, [&](const auto& a, const auto& at_a, const auto& b, const auto& at_b, const auto& name) {
-    candidates.push_back({distance_bound(a, at_a, b, at_b),
-                          [&a, &at_a, &b, &at_b] { return separation(a, at_a.X_WG, b, at_b.X_WG); }, name()});
-    return false;
-  });
+  for (int i = 0; i < exact.robot_parts; ++i) {
+    for (const int j : exact.partners[static_cast<std::size_t>(i)]) {
+      candidates.push_back({placement.distance_bound(i, j), i, j});
+    }
+  }
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& x, const Candidate& y) { return x.bound < y.bound; });
   Clearance result{std::numeric_limits<double>::infinity(), {}};
   for (const Candidate& candidate : candidates) {
     if (candidate.bound >= result.distance) break;
-    const double distance = candidate.distance();
-    if (distance < result.distance) result = {distance, candidate.pair};
+    const double distance = placement.separation(candidate.a, candidate.b);
+    if (distance < result.distance) result = {distance, exact.names_of(candidate.a, candidate.b)};
     if (distance == 0.0) break;
   }
   return result;
 }
 
-CollisionChecker::CollisionChecker(const RobotModel& robot, const Scene& scene, std::vector<BodyPair> touching)
-    : world_(std::make_unique<const World>(robot, scene, touching)) {}
-CollisionChecker::~CollisionChecker() = default;
-CollisionChecker::CollisionChecker(CollisionChecker&&) noexcept = default;
-CollisionChecker& CollisionChecker::operator=(CollisionChecker&&) noexcept = default;
-
-bool CollisionChecker::free(const Eigen::Ref<const Eigen::VectorXd>& q) const { return free(world_->X_WR, q); }
-
-bool CollisionChecker::free(const Eigen::Isometry3d& X_WR, const Eigen::Ref<const Eigen::VectorXd>& q) const {
-  return world_->free(world_->place_links(X_WR, q));
-}
-
-std::vector<BodyPair> CollisionChecker::colliding_pairs(const Eigen::Ref<const Eigen::VectorXd>& q) const {
-  return colliding_pairs(world_->X_WR, q);
-}
-
-std::vector<BodyPair> CollisionChecker::colliding_pairs(const Eigen::Isometry3d& X_WR,
-                                                        const Eigen::Ref<const Eigen::VectorXd>& q) const {
-  return world_->colliding_pairs(world_->place_links(X_WR, q));
-}
-
-CollisionChecker::Clearance CollisionChecker::clearance(const Eigen::Ref<const Eigen::VectorXd>& q) const {
-  return world_->clearance(world_->place_links(world_->X_WR, q));
-}
-
 std::vector<std::string> CollisionChecker::open_meshes() const {
   std::set<std::string> names;
-  for (const Part& part : world_->links) {
-    if (part.shape.open_surface()) names.insert(world_->robot.links()[static_cast<std::size_t>(part.body)].name);
-  }
-  for (const Part& part : world_->bodies) {
-    if (part.shape.open_surface()) names.insert(world_->body_names[static_cast<std::size_t>(part.body)]);
+  const CollisionWorld& exact = world_->exact;
+  for (std::size_t i = 0; i < exact.parts.size(); ++i) {
+    if (exact.parts[i].shape.open_surface()) names.insert(exact.name_of(static_cast<int>(i)));
   }
   return {names.begin(), names.end()};
 }

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -18,10 +21,8 @@
 #include <fcl/narrowphase/distance.h>
 
 #include "core/require.hpp"
-#include "robot/bounding_volume_tree.hpp"
 #include "robot/convex_distance.hpp"
-#include "robot/mesh.hpp"
-#include "robot/mesh_distance.hpp"
+#include "robot/solid_region.hpp"
 
 namespace opponens::robot {
 
@@ -30,51 +31,6 @@ namespace {
 constexpr double kLeastSeparation = 1e-9;  ///< m
 
 constexpr double kBoundTolerance = 1e-3;  ///< m
-
-/// A closed component that fills less of its box than this is a sheet counted there and back, not a solid.
-constexpr double kLeastFilling = 1e-9;
-
-/// The region that one closed component of a mesh encloses.
-struct Enclosure {
-  Eigen::AlignedBox3d box;
-  MeshDistance distance;
-  bool outward;         ///< triangles seen counter-clockwise from outside
-  bool cavity = false;  ///< it is the wall of a hollow inside another component
-
-  bool encloses(const Eigen::Vector3d& p) const {
-    return box.contains(p) && (distance.signed_distance(p) < 0.0) == outward;
-  }
-};
-
-struct MeshParts {
-  std::vector<Enclosure> enclosures;
-  std::vector<Eigen::Vector3d> seeds;  ///< a vertex of each component
-  bool open = false;
-};
-
-MeshParts split(const TriangleMesh& mesh) {
-  MeshParts parts;
-  std::vector<Eigen::Vector3d> seed_of;
-  for (TriangleMesh& component : components(mesh)) {
-    const Eigen::Vector3d seed = component.vertices.col(component.triangles(0, 0));
-    parts.seeds.push_back(seed);
-    const double volume = mass_properties(component).volume;
-    const Eigen::AlignedBox3d box(component.vertices.rowwise().minCoeff(), component.vertices.rowwise().maxCoeff());
-    if (!is_closed(component) || std::abs(volume) <= kLeastFilling * box.volume()) {
-      parts.open = true;
-      continue;
-    }
-    parts.enclosures.push_back({box, MeshDistance(std::make_shared<TriangleMesh>(std::move(component))), volume > 0.0});
-    seed_of.push_back(seed);
-  }
-  // Inside out and within an outward component: a hollow. Inside out on its own: a solid written with flipped faces.
-  for (std::size_t i = 0; i < parts.enclosures.size(); ++i) {
-    if (parts.enclosures[i].outward) continue;
-    parts.enclosures[i].cavity = std::any_of(parts.enclosures.begin(), parts.enclosures.end(),
-                                             [&](const Enclosure& e) { return e.outward && e.encloses(seed_of[i]); });
-  }
-  return parts;
-}
 
 std::shared_ptr<fcl::CollisionGeometryd> fcl_mesh(const TriangleMesh& mesh) {
   auto model = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
@@ -88,6 +44,7 @@ std::shared_ptr<fcl::CollisionGeometryd> fcl_mesh(const TriangleMesh& mesh) {
   model->beginModel(static_cast<int>(triangles.size()), static_cast<int>(vertices.size()));
   const bool added = model->addSubModel(vertices, triangles) == fcl::BVH_OK && model->endModel() == fcl::BVH_OK;
   require(added, [&] { return "collision: FCL refuses the mesh " + mesh.source; });
+  model->computeLocalAABB();
   return model;
 }
 
@@ -95,9 +52,28 @@ std::shared_ptr<fcl::CollisionGeometryd> fcl_mesh(const TriangleMesh& mesh) {
 
 struct CollisionShape::Data {
   Shape shape;
-  std::shared_ptr<fcl::CollisionGeometryd> geometry;
-  MeshParts parts;                                      ///< of a mesh; a primitive has its centre as seed
-  std::unique_ptr<const BoundingVolumeTree> triangles;  ///< of a mesh
+  std::shared_ptr<const TriangleMesh> mesh;            ///< null for a primitive
+  std::shared_ptr<fcl::CollisionGeometryd> primitive;  ///< null for a mesh
+
+  /// Of a mesh. Both take as long as reading it from its file, and many meshes are never near enough to another body to
+  /// be asked: they are made when they are needed first.
+  const SolidRegion& region() const {
+    std::call_once(region_once, [this] { region_made = std::make_unique<const SolidRegion>(*mesh); });
+    return *region_made;
+  }
+  const fcl::CollisionGeometryd* geometry() const {
+    if (mesh == nullptr) return primitive.get();
+    std::call_once(fcl_once, [this] { fcl_made = fcl_mesh(*mesh); });
+    return fcl_made.get();
+  }
+
+  const SphereTree& cover() const {
+    std::call_once(cover_once, [this] {
+      cover_made = mesh != nullptr && mesh->cover != nullptr ? mesh->cover
+                                                             : std::make_shared<const SphereTree>(sphere_tree(shape));
+    });
+    return *cover_made;
+  }
 
   bool contains(const Eigen::Vector3d& p) const {
     if (const auto* box = std::get_if<Box>(&shape)) return (2.0 * p.cwiseAbs() - box->size).maxCoeff() <= 0.0;
@@ -105,62 +81,92 @@ struct CollisionShape::Data {
     if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
       return p.head<2>().norm() <= cylinder->radius && 2.0 * std::abs(p.z()) <= cylinder->length;
     }
-    int layers = 0;
-    for (const Enclosure& e : parts.enclosures) {
-      if (e.encloses(p)) layers += e.cavity ? -1 : 1;
-    }
-    return layers > 0;
+    return region().contains(p);
   }
+
+ private:
+  mutable std::once_flag region_once;
+  mutable std::once_flag fcl_once;
+  mutable std::once_flag cover_once;
+  mutable std::shared_ptr<const SphereTree> cover_made;
+  mutable std::unique_ptr<const SolidRegion> region_made;
+  mutable std::shared_ptr<fcl::CollisionGeometryd> fcl_made;
 };
 
 namespace {
 
-struct ShapeBuilder {
-  CollisionShape::Data& data;
-  Eigen::Vector3d& center;
-  Eigen::Vector3d& half_extents;
-  double& radius;
-
-  void operator()(const Box& box) const {
+/// FCL's form of a primitive; throws std::invalid_argument for sizes that no solid has. Null for a mesh.
+struct FclPrimitive {
+  std::shared_ptr<fcl::CollisionGeometryd> operator()(const Box& box) const {
     require(box.size.allFinite() && box.size.minCoeff() > 0.0, "collision: a box needs positive edge lengths");
-    data.geometry = std::make_shared<fcl::Boxd>(box.size);
-    set_primitive(0.5 * box.size, 0.5 * box.size.norm());
+    return std::make_shared<fcl::Boxd>(box.size);
   }
-  void operator()(const Sphere& sphere) const {
+  std::shared_ptr<fcl::CollisionGeometryd> operator()(const Sphere& sphere) const {
     require(std::isfinite(sphere.radius) && sphere.radius > 0.0, "collision: a sphere needs a positive radius");
-    data.geometry = std::make_shared<fcl::Sphered>(sphere.radius);
-    set_primitive(Eigen::Vector3d::Constant(sphere.radius), sphere.radius);
+    return std::make_shared<fcl::Sphered>(sphere.radius);
   }
-  void operator()(const Cylinder& c) const {
+  std::shared_ptr<fcl::CollisionGeometryd> operator()(const Cylinder& c) const {
     require(std::isfinite(c.radius) && c.radius > 0.0 && std::isfinite(c.length) && c.length > 0.0,
             "collision: a cylinder needs a positive radius and length");
-    data.geometry = std::make_shared<fcl::Cylinderd>(c.radius, c.length);
-    set_primitive({c.radius, c.radius, 0.5 * c.length}, std::hypot(c.radius, 0.5 * c.length));
+    return std::make_shared<fcl::Cylinderd>(c.radius, c.length);
   }
-  void operator()(const std::shared_ptr<const TriangleMesh>& mesh) const {
+  std::shared_ptr<fcl::CollisionGeometryd> operator()(const std::shared_ptr<const TriangleMesh>& mesh) const {
     require(mesh != nullptr && mesh->triangles.cols() > 0, "collision: a mesh without triangles");
-    data.geometry = fcl_mesh(*mesh);
-    data.parts = split(*mesh);
-    data.triangles = std::make_unique<const BoundingVolumeTree>(*mesh);
-    const Eigen::Vector3d lower = mesh->vertices.rowwise().minCoeff();
-    const Eigen::Vector3d upper = mesh->vertices.rowwise().maxCoeff();
-    center = 0.5 * (lower + upper);
-    half_extents = 0.5 * (upper - lower);
-    radius = (mesh->vertices.colwise() - center).colwise().norm().maxCoeff();
-  }
-  void set_primitive(const Eigen::Vector3d& half, double bounding_radius) const {
-    data.parts.seeds = {Eigen::Vector3d::Zero()};
-    center = Eigen::Vector3d::Zero();
-    half_extents = half;
-    radius = bounding_radius;
+    return nullptr;
   }
 };
 
-/// Whether a seed of b lies in a. Only after the surfaces were found apart.
+struct BoundsOf {
+  CollisionShape::Bounds operator()(const Box& box) const {
+    return {Eigen::Vector3d::Zero(), 0.5 * box.size, 0.5 * box.size.norm()};
+  }
+  CollisionShape::Bounds operator()(const Sphere& sphere) const {
+    return {Eigen::Vector3d::Zero(), Eigen::Vector3d::Constant(sphere.radius), sphere.radius};
+  }
+  CollisionShape::Bounds operator()(const Cylinder& c) const {
+    return {Eigen::Vector3d::Zero(), {c.radius, c.radius, 0.5 * c.length}, std::hypot(c.radius, 0.5 * c.length)};
+  }
+  CollisionShape::Bounds operator()(const std::shared_ptr<const TriangleMesh>& mesh) const {
+    const Eigen::Vector3d lower = mesh->vertices.rowwise().minCoeff();
+    const Eigen::Vector3d upper = mesh->vertices.rowwise().maxCoeff();
+    const Eigen::Vector3d center = 0.5 * (lower + upper);
+    return {center, 0.5 * (upper - lower), (mesh->vertices.colwise() - center).colwise().norm().maxCoeff()};
+  }
+};
+
+std::shared_ptr<const CollisionShape::Data> make_data(const Shape& shape) {
+  auto data = std::make_shared<CollisionShape::Data>();
+  data->shape = shape;
+  data->primitive = std::visit(FclPrimitive{}, shape);
+  // FCL fills this cache lazily elsewhere; filled here, the geometry is read-only afterwards.
+  if (data->primitive != nullptr) data->primitive->computeLocalAABB();
+  if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&shape)) data->mesh = *mesh;
+  return data;
+}
+
+/// The data of a mesh that some CollisionShape holds already, else new.
+std::shared_ptr<const CollisionShape::Data> shared_data(const std::shared_ptr<const TriangleMesh>& mesh) {
+  using Known = std::map<std::weak_ptr<const TriangleMesh>, std::weak_ptr<const CollisionShape::Data>,
+                         std::owner_less<std::weak_ptr<const TriangleMesh>>>;
+  static std::mutex mutex;
+  static Known known;
+  const std::lock_guard lock(mutex);
+  std::erase_if(known, [](const auto& entry) { return entry.second.expired(); });
+  if (const auto found = known.find(mesh); found != known.end()) {
+    if (auto data = found->second.lock()) return data;
+  }
+  auto data = make_data(mesh);
+  known[mesh] = data;
+  return data;
+}
+
+/// Whether a seed of b (a vertex of each component; the centre of a primitive) lies in a. Only after the surfaces were
+/// found apart.
 bool holds_a_seed(const CollisionShape& a, const Eigen::Isometry3d& X_WA, const CollisionShape& b,
                   const Eigen::Isometry3d& X_WB) {
   const Eigen::Isometry3d X_AB = X_WA.inverse(Eigen::Isometry) * X_WB;
-  const std::vector<Eigen::Vector3d>& seeds = b.data().parts.seeds;
+  if (b.data().mesh == nullptr) return a.data().contains(X_AB.translation());
+  const std::vector<Eigen::Vector3d>& seeds = b.data().region().seeds();
   return std::any_of(seeds.begin(), seeds.end(),
                      [&](const Eigen::Vector3d& seed) { return a.data().contains(X_AB * seed); });
 }
@@ -169,16 +175,16 @@ bool holds_a_seed(const CollisionShape& a, const Eigen::Isometry3d& X_WA, const 
 double sphere_mesh_gap(const Sphere& sphere, const Eigen::Isometry3d& X_WS, const CollisionShape& mesh,
                        const Eigen::Isometry3d& X_WM) {
   const Eigen::Vector3d p_MS = X_WM.inverse(Eigen::Isometry) * X_WS.translation();
-  return std::sqrt(mesh.data().triangles->nearest(p_MS).squared_distance) - sphere.radius;
+  return std::sqrt(mesh.data().region().triangles().nearest(p_MS).squared_distance) - sphere.radius;
 }
 
 /// The gap when one of the two is a sphere and the other a mesh.
 std::optional<double> sphere_mesh_gap(const CollisionShape& a, const Eigen::Isometry3d& X_WA, const CollisionShape& b,
                                       const Eigen::Isometry3d& X_WB) {
-  if (const auto* sphere = std::get_if<Sphere>(&a.data().shape); sphere != nullptr && b.data().triangles != nullptr) {
+  if (const auto* sphere = std::get_if<Sphere>(&a.data().shape); sphere != nullptr && b.data().mesh != nullptr) {
     return sphere_mesh_gap(*sphere, X_WA, b, X_WB);
   }
-  if (const auto* sphere = std::get_if<Sphere>(&b.data().shape); sphere != nullptr && a.data().triangles != nullptr) {
+  if (const auto* sphere = std::get_if<Sphere>(&b.data().shape); sphere != nullptr && a.data().mesh != nullptr) {
     return sphere_mesh_gap(*sphere, X_WB, a, X_WA);
   }
   return std::nullopt;
@@ -189,7 +195,7 @@ bool surfaces_meet(const CollisionShape& a, const Eigen::Isometry3d& X_WA, const
   if (const std::optional<double> gap = sphere_mesh_gap(a, X_WA, b, X_WB)) return *gap <= 0.0;
   const fcl::CollisionRequestd request(1, false);
   fcl::CollisionResultd result;
-  fcl::collide(a.data().geometry.get(), X_WA, b.data().geometry.get(), X_WB, request, result);
+  fcl::collide(a.data().geometry(), X_WA, b.data().geometry(), X_WB, request, result);
   return result.isCollision();
 }
 
@@ -197,7 +203,7 @@ bool surfaces_meet(const CollisionShape& a, const Eigen::Isometry3d& X_WA, const
 double mesh_primitive_gap(const CollisionShape& mesh, const Eigen::Isometry3d& X_WM, const Shape& shape,
                           const Eigen::Isometry3d& X_WS) {
   const Eigen::Isometry3d X_MS = X_WM.inverse(Eigen::Isometry) * X_WS;
-  return mesh.data().triangles->least(
+  return mesh.data().region().triangles().least(
       [&](const Eigen::Vector3d& center, const Eigen::Vector3d& half_extents) {
         const Eigen::Isometry3d X_MB(Eigen::Translation3d{center});
         // The bound is valid at any tolerance; a coarse one is found in a few steps.
@@ -211,15 +217,16 @@ double mesh_primitive_gap(const CollisionShape& mesh, const Eigen::Isometry3d& X
 }  // namespace
 
 CollisionShape::CollisionShape(const Shape& shape) {
-  auto data = std::make_shared<Data>();
-  data->shape = shape;
-  std::visit(ShapeBuilder{*data, center_, half_extents_, radius_}, shape);
-  // FCL fills this cache lazily elsewhere; filled here, the geometry is read-only afterwards.
-  data->geometry->computeLocalAABB();
-  data_ = std::move(data);
+  const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&shape);
+  data_ = mesh != nullptr && *mesh != nullptr ? shared_data(*mesh) : make_data(shape);
+  bounds_ = std::visit(BoundsOf{}, shape);
 }
 
-bool CollisionShape::open_surface() const { return data_->parts.open; }
+const SphereTree& CollisionShape::cover() const { return data_->cover(); }
+
+bool CollisionShape::is_box() const { return std::holds_alternative<Box>(data_->shape); }
+
+bool CollisionShape::open_surface() const { return data_->mesh != nullptr && data_->region().open(); }
 
 bool intersect(const CollisionShape& a, const Eigen::Isometry3d& X_WA, const CollisionShape& b,
                const Eigen::Isometry3d& X_WB) {
@@ -230,8 +237,8 @@ bool intersect(const CollisionShape& a, const Eigen::Isometry3d& X_WA, const Col
 double separation(const CollisionShape& a, const Eigen::Isometry3d& X_WA, const CollisionShape& b,
                   const Eigen::Isometry3d& X_WB) {
   if (intersect(a, X_WA, b, X_WB)) return 0.0;
-  const bool mesh_a = a.data().triangles != nullptr;
-  const bool mesh_b = b.data().triangles != nullptr;
+  const bool mesh_a = a.data().mesh != nullptr;
+  const bool mesh_b = b.data().mesh != nullptr;
   double distance = 0.0;
   if (const std::optional<double> gap = sphere_mesh_gap(a, X_WA, b, X_WB)) {
     distance = *gap;
@@ -243,8 +250,8 @@ double separation(const CollisionShape& a, const Eigen::Isometry3d& X_WA, const 
     distance = mesh_primitive_gap(b, X_WB, a.data().shape, X_WA);
   } else {
     fcl::DistanceResultd result;
-    distance = fcl::distance(a.data().geometry.get(), X_WA, b.data().geometry.get(), X_WB,
-                             fcl::DistanceRequestd(false, false), result);
+    distance = fcl::distance(a.data().geometry(), X_WA, b.data().geometry(), X_WB, fcl::DistanceRequestd(false, false),
+                             result);
   }
   return std::max(distance, kLeastSeparation);
 }

@@ -8,18 +8,30 @@
 #include <Eigen/Geometry>
 
 #include "robot/geometry.hpp"
+#include "robot/sphere_tree.hpp"
 
 namespace opponens::robot {
 
 /// A shape prepared for collision queries: FCL geometry, bounding volumes, and for meshes the solids that their closed
-/// components enclose. Cheap to copy (shared), immutable, thread-safe.
+/// components enclose. Cheap to copy, immutable, thread-safe. What takes long to make is made when it is needed first,
+/// and is shared by all that are made of the same mesh (the same object in memory) while one of them lives.
 class CollisionShape {
  public:
   explicit CollisionShape(const Shape& shape);
 
-  const Eigen::Vector3d& center() const { return center_; }              ///< m, of the bounding box and sphere, in G
-  const Eigen::Vector3d& half_extents() const { return half_extents_; }  ///< m, of the bounding box along G's axes
-  double radius() const { return radius_; }                              ///< m, of the bounding sphere about center
+  struct Bounds {
+    Eigen::Vector3d center;        ///< m, of the bounding box and sphere, in G
+    Eigen::Vector3d half_extents;  ///< m, of the bounding box along G's axes
+    double radius;                 ///< m, of the bounding sphere about center
+  };
+  const Eigen::Vector3d& center() const { return bounds_.center; }
+  const Eigen::Vector3d& half_extents() const { return bounds_.half_extents; }
+  double radius() const { return bounds_.radius; }
+
+  /// Balls that contain the solid.
+  const SphereTree& cover() const;
+  /// Whether the bounding box is the shape itself.
+  bool is_box() const;
 
   /// A mesh with a component that is not closed: that component is a surface without an inside.
   bool open_surface() const;
@@ -29,9 +41,7 @@ class CollisionShape {
 
  private:
   std::shared_ptr<const Data> data_;
-  Eigen::Vector3d center_;
-  Eigen::Vector3d half_extents_;
-  double radius_;
+  Bounds bounds_;
 };
 
 /// Whether two solids share a point: FCL (closed forms, GJK of libccd with its tolerance of 1e-6 m, or triangle tests;

@@ -169,23 +169,26 @@ void RobotModel::link_poses(const Eigen::Ref<const Eigen::VectorXd>& q, std::vec
   X_RL.resize(description_.links.size());
   X_RL[0].setIdentity();
   for (std::size_t i = 0; i < description_.joints.size(); ++i) {
-    const Joint& joint = description_.joints[i];
-    const Drive& drive = drives_[i];
-    const Eigen::Isometry3d& X_RP = X_RL[static_cast<std::size_t>(joint.parent)];
-    Eigen::Isometry3d& X_RC = X_RL[i + 1];
-    X_RC.makeAffine();
-    const double position = (drive.index < 0 ? 0.0 : drive.multiplier * q[drive.index]) + drive.offset;
-    if (joint.type == JointType::revolute) {
-      const Turn& turn = turns_[i];
-      const Eigen::Matrix3d R = turn.fixed + std::sin(position) * turn.odd + (1.0 - std::cos(position)) * turn.even;
-      X_RC.linear().noalias() = X_RP.linear() * R;
-    } else {
-      X_RC.linear().noalias() = X_RP.linear() * turns_[i].fixed;
-    }
-    X_RC.translation() = X_RP.translation();
-    X_RC.translation().noalias() += X_RP.linear() * joint.X_PJ.translation();
-    if (joint.type == JointType::prismatic) X_RC.translation() += X_RC.linear() * (joint.axis * position);
+    place_child(i, q, X_RL[static_cast<std::size_t>(description_.joints[i].parent)], X_RL[i + 1]);
   }
+}
+
+void RobotModel::place_child(std::size_t index, const Eigen::Ref<const Eigen::VectorXd>& q,
+                             const Eigen::Isometry3d& X_RP, Eigen::Isometry3d& X_RC) const {
+  const Joint& joint = description_.joints[index];
+  const Drive& drive = drives_[index];
+  X_RC.makeAffine();
+  const double position = (drive.index < 0 ? 0.0 : drive.multiplier * q[drive.index]) + drive.offset;
+  if (joint.type == JointType::revolute) {
+    const Turn& turn = turns_[index];
+    const Eigen::Matrix3d R = turn.fixed + std::sin(position) * turn.odd + (1.0 - std::cos(position)) * turn.even;
+    X_RC.linear().noalias() = X_RP.linear() * R;
+  } else {
+    X_RC.linear().noalias() = X_RP.linear() * turns_[index].fixed;
+  }
+  X_RC.translation() = X_RP.translation();
+  X_RC.translation().noalias() += X_RP.linear() * joint.X_PJ.translation();
+  if (joint.type == JointType::prismatic) X_RC.translation() += X_RC.linear() * (joint.axis * position);
 }
 
 Eigen::Matrix3Xd RobotModel::point_jacobian(const std::vector<Eigen::Isometry3d>& X_RL, int link,

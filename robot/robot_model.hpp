@@ -101,6 +101,18 @@ class RobotModel {
   /// The same, reusing the output's memory.
   void link_poses(const Eigen::Ref<const Eigen::VectorXd>& q, std::vector<Eigen::Isometry3d>& X_RL) const;
 
+  /// How a joint's position follows from q: multiplier q[index] + offset.
+  struct Drive {
+    int index = -1;  ///< into q; -1: constant (fixed, or not actuated)
+    double multiplier = 1.0;
+    double offset = 0.0;  ///< rad or m
+  };
+  const std::vector<Drive>& drives() const { return drives_; }  ///< [joints]
+
+  /// Pose X_RC of the link that a joint moves, given its parent's: the step that link_poses takes for each joint.
+  void place_child(std::size_t joint, const Eigen::Ref<const Eigen::VectorXd>& q, const Eigen::Isometry3d& X_RP,
+                   Eigen::Isometry3d& X_RC) const;
+
   /// Geometric Jacobian [3 x d] of the point p_R fixed to a link, in R, given the link poses at q.
   Eigen::Matrix3Xd point_jacobian(const std::vector<Eigen::Isometry3d>& X_RL, int link,
                                   const Eigen::Vector3d& p_R) const;
@@ -110,12 +122,6 @@ class RobotModel {
   bool within_limits(const Eigen::Ref<const Eigen::VectorXd>& q, double tolerance = 1e-9) const;
 
  private:
-  struct Drive {     ///< how a joint's position follows from q
-    int index = -1;  ///< into q; -1: constant offset (fixed, or not actuated)
-    double multiplier = 1.0;
-    double offset = 0.0;
-  };
-
   /// Rotation of a revolute joint about its axis, parent to child: fixed + sin(q) odd + (1 - cos(q)) even (Rodrigues).
   struct Turn {
     Eigen::Matrix3d fixed;

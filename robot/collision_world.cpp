@@ -1,0 +1,141 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "robot/collision_world.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "core/require.hpp"
+
+namespace opponens::robot {
+
+namespace {
+
+/// m. Bounding volumes must be further apart than this to settle a pair: above the tolerance of FCL's tests (1e-6), so
+/// that the verdict is the narrow phase's, with or without them.
+constexpr double kCullMargin = 2e-6;
+
+/// The pairs that are not to be checked, either way round.
+std::set<BodyPair> excluded_pairs(const RobotModel& robot, const Scene& scene, const std::vector<BodyPair>& touching) {
+  std::set<std::string> known;
+  for (const SceneBody& body : scene.bodies) known.insert(body.name);
+  for (const Link& link : robot.links()) known.insert(link.name);
+  std::set<BodyPair> excluded;
+  for (const BodyPair& pair : touching) {
+    for (const std::string& name : {pair.first, pair.second}) {
+      require(known.count(name) == 1,
+              [&] { return "CollisionChecker: touching names '" + name + "', which is absent"; });
+    }
+    excluded.insert(pair);
+    excluded.emplace(pair.second, pair.first);
+  }
+  return excluded;
+}
+
+Placement::Placed place(const CollisionShape& shape, const Eigen::Isometry3d& X_WG) {
+  return {X_WG, {X_WG * shape.center(), X_WG.linear(), shape.half_extents()}};
+}
+
+}  // namespace
+
+CollisionWorld::CollisionWorld(const RobotModel& model, const Scene& scene, const std::vector<BodyPair>& touching)
+    : robot(model), X_WR(scene.X_WR) {
+  const std::set<BodyPair> excluded = excluded_pairs(model, scene, touching);
+  for (std::size_t l = robot.links().size(); l-- > 0;) {
+    for (const Geometry& g : robot.links()[l].collision) {
+      parts.push_back({CollisionShape(g.shape), static_cast<int>(l), g.X_BG});
+    }
+  }
+  robot_parts = static_cast<int>(parts.size());
+  for (const SceneBody& body : scene.bodies) {
+    for (const Geometry& g : body.geometry) {
+      parts.push_back({CollisionShape(g.shape), static_cast<int>(body_names.size()), body.X_WB * g.X_BG});
+    }
+    body_names.push_back(body.name);
+  }
+  const std::set<std::pair<int, int>>& allowed = robot.description().allowed_collisions;
+  for (int i = 0; i < robot_parts; ++i) {
+    std::vector<int>& against = partners.emplace_back();
+    for (int j = i + 1; j < static_cast<int>(parts.size()); ++j) {
+      const std::pair<int, int> links =
+          std::minmax(parts[static_cast<std::size_t>(i)].body, parts[static_cast<std::size_t>(j)].body);
+      if (!of_scene(j) && (links.first == links.second || allowed.contains(links))) continue;
+      if (!excluded.contains(names_of(i, j))) against.push_back(j);
+    }
+  }
+}
+
+const std::string& CollisionWorld::name_of(int part) const {
+  const auto body = static_cast<std::size_t>(parts[static_cast<std::size_t>(part)].body);
+  return of_scene(part) ? body_names[body] : robot.links()[body].name;
+}
+
+BodyPair CollisionWorld::names_of(int a, int b) const {
+  BodyPair pair{name_of(a), name_of(b)};
+  if (!of_scene(b) && pair.second < pair.first) std::swap(pair.first, pair.second);
+  return pair;
+}
+
+Placement::Placement(const CollisionWorld& world, const Eigen::Isometry3d& X_WR,
+                     const Eigen::Ref<const Eigen::VectorXd>& q)
+    : world_(world),
+      X_WR_(X_WR),
+      q_(q),
+      X_RL_(world.robot.links().size()),
+      link_known_(world.robot.links().size(), 0),
+      placed_(world.parts.size()),
+      part_known_(world.parts.size(), 0) {
+  X_RL_[0].setIdentity();
+  link_known_[0] = 1;
+}
+
+const Eigen::Isometry3d& Placement::link(int index) {
+  const auto i = static_cast<std::size_t>(index);
+  if (link_known_[i] == 0) {
+    const auto joint = static_cast<std::size_t>(world_.robot.links()[i].joint);
+    const Eigen::Isometry3d& X_RP = link(world_.robot.description().joints[joint].parent);
+    world_.robot.place_child(joint, q_, X_RP, X_RL_[i]);
+    link_known_[i] = 1;
+  }
+  return X_RL_[i];
+}
+
+const Placement::Placed& Placement::at(int part) {
+  const auto i = static_cast<std::size_t>(part);
+  if (part_known_[i] == 0) {
+    const CollisionPart& own = world_.parts[i];
+    placed_[i] = place(own.shape, world_.of_scene(part) ? own.X_BG : X_WR_ * link(own.body) * own.X_BG);
+    part_known_[i] = 1;
+  }
+  return placed_[i];
+}
+
+/// Bounding volumes, cheapest first: spheres, sphere and box, boxes.
+bool Placement::collide(int a, int b) {
+  const CollisionShape& A = world_.parts[static_cast<std::size_t>(a)].shape;
+  const CollisionShape& B = world_.parts[static_cast<std::size_t>(b)].shape;
+  const Placed& at_a = at(a);
+  const Placed& at_b = at(b);
+  const double reach = A.radius() + B.radius() + kCullMargin;
+  if ((at_a.box.center - at_b.box.center).squaredNorm() > reach * reach) return false;
+  if (point_box_distance(at_a.box.center, at_b.box) > A.radius() + kCullMargin) return false;
+  if (point_box_distance(at_b.box.center, at_a.box) > B.radius() + kCullMargin) return false;
+  return !boxes_apart(at_a.box, at_b.box, kCullMargin) && intersect(A, at_a.X_WG, B, at_b.X_WG);
+}
+
+double Placement::separation(int a, int b) {
+  return robot::separation(world_.parts[static_cast<std::size_t>(a)].shape, at(a).X_WG,
+                           world_.parts[static_cast<std::size_t>(b)].shape, at(b).X_WG);
+}
+
+double Placement::distance_bound(int a, int b) {
+  const double radius_a = world_.parts[static_cast<std::size_t>(a)].shape.radius();
+  const double radius_b = world_.parts[static_cast<std::size_t>(b)].shape.radius();
+  const OrientedBox& box_a = at(a).box;
+  const OrientedBox& box_b = at(b).box;
+  return std::max({(box_a.center - box_b.center).norm() - radius_a - radius_b,
+                   point_box_distance(box_a.center, box_b) - radius_a,
+                   point_box_distance(box_b.center, box_a) - radius_b, 0.0});
+}
+
+}  // namespace opponens::robot

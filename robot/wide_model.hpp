@@ -1,0 +1,96 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+// Internal to robot/: the single-precision picture of a collision world that the wide sweep runs over, in plain arrays.
+#pragma once
+
+namespace opponens::robot::wide {
+
+inline constexpr int kLanes = 8;  ///< configurations at a time
+inline constexpr int kWorld = 0;  ///< frame of the scene; everything is expressed in the robot's usual root
+inline constexpr int kRoot = 1;   ///< frame of the robot's root link
+
+enum class Motion { none, turn, slide };  ///< about, along the frame's z axis
+
+/// A moving frame F in its parent P: X_PF = [rotation, translation] turned about, or moved along, its own z.
+struct Frame {
+  int parent;
+  Motion motion;
+  int joint;  ///< index in the configuration
+  double multiplier;
+  double offset;      ///< rad or m; position = multiplier q + offset
+  float rotation[9];  ///< row-major
+  float translation[3];
+};
+
+/// One shape, fixed to a frame. Radii and half extents are enlarged by the margin for rounding.
+struct Part {
+  int frame;
+  float ball_center[3];
+  float ball_radius;
+  float box_center[3];
+  float box_axes[9];  ///< row-major; columns are the box's axes in the frame
+  float half_extents[3];
+  int root;  ///< first node of its sphere tree; -1: the shape is its box, which no cover could fit better
+};
+
+/// A ball of a sphere tree, in the part's frame.
+struct Node {
+  float center[3];
+  float radius;
+  int first_child;
+  int children;
+};
+
+/// A range of partners in a list.
+struct Range {
+  int begin;
+  int end;
+};
+
+/// Parts [begin, end) move within a ball around a point of a frame, whatever the joints between do.
+struct Cluster {
+  int frame;
+  float center[3];
+  float radius;
+  int begin;
+  int end;
+};
+
+/// Views of arrays; the sweep allocates nothing and calls nothing that is compiled elsewhere.
+struct Model {
+  const Frame* frames;
+  int frame_count;
+  const Part* parts;  ///< of the robot, then of the scene
+  int robot_part_count;
+  int part_count;
+  const Node* nodes;
+  const Range* partners;  ///< [robot parts] ranges of pair_partner: later parts of the robot, then parts of the scene
+  const int* partner;     ///< part index
+  const Cluster* clusters;
+  int cluster_count;
+};
+
+/// A pair that the sweep could not tell apart in some lanes.
+struct Unknown {
+  int a;  ///< part of the robot
+  int b;  ///< part of the robot or the scene
+  unsigned lanes;
+};
+
+struct Query {
+  const double* q[kLanes];  ///< [d] each; idle lanes repeat another
+  unsigned lanes;           ///< asked for
+  const float* root;        ///< X of the robot's root in its usual place, rotation row-major then translation [12]
+};
+
+/// Floats of memory that the sweep needs, to be aligned to 64 bytes.
+int workspace_size(const Model& model);
+
+/// Writes at most one Unknown for each pair into found and returns how many. A lane that no Unknown names is free of
+/// collision: by single-precision kinematics with an error far below the margin, balls around the shapes (ball, ball
+/// tree) and the separating axis theorem on oriented boxes. Portable; sweep_avx2 is the same for a processor with AVX2
+/// and FMA.
+int sweep(const Model& model, const Query& query, float* workspace, Unknown* found);
+int sweep_avx2(const Model& model, const Query& query, float* workspace, Unknown* found);
+
+}  // namespace opponens::robot::wide

@@ -1,0 +1,13 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "robot/wide_sweep.hpp"
+
+namespace opponens::robot::wide {
+
+int workspace_size(const Model& model) { return layout_of(model).size; }
+
+int sweep(const Model& model, const Query& query, float* workspace, Unknown* found) {
+  return run_sweep(model, query, workspace, found);
+}
+
+}  // namespace opponens::robot::wide

@@ -1,0 +1,390 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+// The wide sweep's source, included by one .cpp for each instruction set. Everything here has internal linkage, so that
+// no code made for one processor can be linked into a path for another.
+#pragma once
+
+#if defined(__AVX__)
+#include <immintrin.h>
+#elif defined(__SSE__)
+#include <xmmintrin.h>
+#endif
+
+#include "robot/wide_model.hpp"
+
+namespace opponens::robot::wide {
+namespace {
+
+typedef float V __attribute__((vector_size(4 * kLanes)));
+typedef int Bits __attribute__((vector_size(4 * kLanes)));
+typedef double D __attribute__((vector_size(8 * kLanes)));
+
+struct V3 {
+  V x, y, z;
+};
+
+/// A pose: rotation by columns, translation.
+struct Pose {
+  V3 column[3];
+  V3 p;
+};
+
+/// A box with lanes: axes by columns.
+struct LaneBox {
+  V3 center;
+  V3 axis[3];
+};
+
+[[gnu::always_inline]] inline V all(float value) { return V{} + value; }
+
+[[gnu::always_inline]] inline unsigned lanes_of(const Bits& condition) {
+#if defined(__AVX__)
+  return static_cast<unsigned>(_mm256_movemask_ps(__builtin_bit_cast(__m256, condition)));
+#elif defined(__SSE__)
+  const __m128* half = reinterpret_cast<const __m128*>(&condition);
+  return static_cast<unsigned>(_mm_movemask_ps(half[0]) | (_mm_movemask_ps(half[1]) << 4));
+#else
+  unsigned lanes = 0;
+  for (int i = 0; i < kLanes; ++i) lanes |= (condition[i] < 0 ? 1U : 0U) << i;
+  return lanes;
+#endif
+}
+
+[[gnu::always_inline]] inline V magnitude(const V& v) {
+  const Bits bits = __builtin_bit_cast(Bits, v) & 0x7fffffff;
+  return __builtin_bit_cast(V, bits);
+}
+[[gnu::always_inline]] inline V positive(const V& v) { return v > 0.0F ? v : V{}; }
+
+[[gnu::always_inline]] inline V dot(const V3& a, const V3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+[[gnu::always_inline]] inline V3 minus(const V3& a, const V3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+
+[[gnu::always_inline]] inline V3 rotated(const Pose& X, const float* v) {
+  return {X.column[0].x * v[0] + X.column[1].x * v[1] + X.column[2].x * v[2],
+          X.column[0].y * v[0] + X.column[1].y * v[1] + X.column[2].y * v[2],
+          X.column[0].z * v[0] + X.column[1].z * v[1] + X.column[2].z * v[2]};
+}
+[[gnu::always_inline]] inline V3 moved(const Pose& X, const float* p) {
+  const V3 r = rotated(X, p);
+  return {r.x + X.p.x, r.y + X.p.y, r.z + X.p.z};
+}
+
+/// Sine and cosine of angles within a turn, to 1e-7 (polynomials on [-pi/4, pi/4]: Cephes' sinf and cosf).
+[[gnu::always_inline]] inline void sine_cosine(const V& angle, V& sine, V& cosine) {
+  const V magic = all(12582912.0F);  // adding it rounds to an integer
+  const V quadrant = (angle * 0.636619772F + magic) - magic;
+  const V r =
+      ((angle - quadrant * 1.5703125F) - quadrant * 4.837512969970703125e-4F) - quadrant * 7.549789948768648e-8F;
+  const V z = r * r;
+  const V s = r + r * z * (-1.6666654611e-1F + z * (8.3321608736e-3F - z * 1.9515295891e-4F));
+  const V c =
+      1.0F - 0.5F * z + z * z * (4.166664568298827e-2F + z * (-1.388731625493765e-3F + z * 2.443315711809948e-5F));
+  const Bits k = __builtin_convertvector(quadrant, Bits);
+  const Bits odd = (k & 1) != 0;
+  const V sine_magnitude = odd ? c : s;
+  const V cosine_magnitude = odd ? s : c;
+  const Bits sine_sign = (k & 2) << 30;
+  const Bits cosine_sign = ((k + 1) & 2) << 30;
+  const Bits sine_bits = __builtin_bit_cast(Bits, sine_magnitude) ^ sine_sign;
+  const Bits cosine_bits = __builtin_bit_cast(Bits, cosine_magnitude) ^ cosine_sign;
+  sine = __builtin_bit_cast(V, sine_bits);
+  cosine = __builtin_bit_cast(V, cosine_bits);
+}
+
+/// The positions of a frame's joint, angles brought into a turn in double precision.
+[[gnu::always_inline]] inline V positions_of(const Frame& frame, const Query& query) {
+  D q;
+  for (int lane = 0; lane < kLanes; ++lane) q[lane] = query.q[lane][frame.joint];
+  D position = q * frame.multiplier + frame.offset;
+  if (frame.motion == Motion::turn) {
+    const double magic = 6755399441055744.0;  // adding it rounds to an integer
+    const D turns = (position * 0.15915494309189533577 + magic) - magic;
+    position = position - turns * 6.28318530717958647693;
+  }
+  return __builtin_convertvector(position, V);
+}
+
+[[gnu::always_inline]] inline void place_frames(const Model& model, const Query& query, Pose* X) {
+  X[kWorld] = {{{all(1), V{}, V{}}, {V{}, all(1), V{}}, {V{}, V{}, all(1)}}, {V{}, V{}, V{}}};
+  const float* r = query.root;
+  X[kRoot] = {{{all(r[0]), all(r[3]), all(r[6])}, {all(r[1]), all(r[4]), all(r[7])}, {all(r[2]), all(r[5]), all(r[8])}},
+              {all(r[9]), all(r[10]), all(r[11])}};
+  for (int f = kRoot + 1; f < model.frame_count; ++f) {
+    const Frame& frame = model.frames[f];
+    const Pose& parent = X[frame.parent];
+    const float* c = frame.rotation;
+    const float first[3] = {c[0], c[3], c[6]};
+    const float second[3] = {c[1], c[4], c[7]};
+    const float third[3] = {c[2], c[5], c[8]};
+    const V3 a = rotated(parent, first);
+    const V3 b = rotated(parent, second);
+    Pose& own = X[f];
+    own.column[2] = rotated(parent, third);
+    own.p = moved(parent, frame.translation);
+    const V position = positions_of(frame, query);
+    if (frame.motion == Motion::turn) {
+      V s;
+      V k;
+      sine_cosine(position, s, k);
+      own.column[0] = {a.x * k + b.x * s, a.y * k + b.y * s, a.z * k + b.z * s};
+      own.column[1] = {b.x * k - a.x * s, b.y * k - a.y * s, b.z * k - a.z * s};
+    } else {
+      own.column[0] = a;
+      own.column[1] = b;
+      const V3& axis = own.column[2];
+      own.p = {own.p.x + axis.x * position, own.p.y + axis.y * position, own.p.z + axis.z * position};
+    }
+  }
+}
+
+/// What is computed when it is first asked for.
+struct Scratch {
+  const Model& model;
+  const Pose* X;
+  LaneBox* boxes;  ///< [parts]
+  bool* placed;    ///< [parts]
+};
+
+[[gnu::always_inline]] inline const LaneBox& box_of(const Scratch& scratch, int index) {
+  LaneBox& box = scratch.boxes[index];
+  if (scratch.placed[index]) return box;
+  scratch.placed[index] = true;
+  const Part& part = scratch.model.parts[index];
+  const Pose& X = scratch.X[part.frame];
+  const float* a = part.box_axes;
+  const float first[3] = {a[0], a[3], a[6]};
+  const float second[3] = {a[1], a[4], a[7]};
+  const float third[3] = {a[2], a[5], a[8]};
+  box = {moved(X, part.box_center), {rotated(X, first), rotated(X, second), rotated(X, third)}};
+  return box;
+}
+
+/// Lanes in which a ball may meet a box.
+[[gnu::always_inline]] inline unsigned near_box(const V3& center, const V& radius, const LaneBox& box,
+                                                const float* half) {
+  const V3 d = minus(center, box.center);
+  const V x = positive(magnitude(dot(d, box.axis[0])) - half[0]);
+  const V y = positive(magnitude(dot(d, box.axis[1])) - half[1]);
+  const V z = positive(magnitude(dot(d, box.axis[2])) - half[2]);
+  return lanes_of(x * x + y * y + z * z <= radius * radius);
+}
+
+/// Lanes in which none of the 15 axes of the separating axis theorem keeps two boxes apart (Gottschalk 1996). Cross
+/// products that nearly vanish say nothing wrong: both sides of the test shrink with them, but for the margin, which
+/// enlarges the boxes.
+[[gnu::noinline]] unsigned boxes_near(const LaneBox& a, const float* h, const LaneBox& b, const float* g,
+                                      unsigned lanes) {
+  const V3 d = minus(b.center, a.center);
+  V R[3][3];
+  V Q[3][3];
+  V t[3];
+  for (int i = 0; i < 3; ++i) {
+    t[i] = dot(d, a.axis[i]);
+    for (int j = 0; j < 3; ++j) {
+      R[i][j] = dot(a.axis[i], b.axis[j]);
+      Q[i][j] = magnitude(R[i][j]) + 1e-6F;
+    }
+  }
+  Bits apart{};
+  for (int i = 0; i < 3; ++i) {
+    apart |= magnitude(t[i]) > h[i] + Q[i][0] * g[0] + Q[i][1] * g[1] + Q[i][2] * g[2];
+  }
+  for (int j = 0; j < 3; ++j) {
+    const V along = t[0] * R[0][j] + t[1] * R[1][j] + t[2] * R[2][j];
+    apart |= magnitude(along) > g[j] + Q[0][j] * h[0] + Q[1][j] * h[1] + Q[2][j] * h[2];
+  }
+  lanes &= ~lanes_of(apart);
+  if (lanes == 0) return 0;
+  for (int i = 0; i < 3; ++i) {
+    const int i1 = (i + 1) % 3;
+    const int i2 = (i + 2) % 3;
+    for (int j = 0; j < 3; ++j) {
+      const int j1 = (j + 1) % 3;
+      const int j2 = (j + 2) % 3;
+      const V reach = h[i1] * Q[i2][j] + h[i2] * Q[i1][j] + g[j1] * Q[i][j2] + g[j2] * Q[i][j1];
+      apart |= magnitude(t[i2] * R[i1][j] - t[i1] * R[i2][j]) > reach;
+    }
+  }
+  return lanes & ~lanes_of(apart);
+}
+
+constexpr int kStack = 256;  ///< entries of a descent; wider trees end it with "unknown"
+
+/// Lanes in which a leaf of the tree may meet the box.
+[[gnu::noinline]] unsigned tree_near_box(const Node* nodes, int root, const Pose& X, const LaneBox& box,
+                                         const float* half, unsigned lanes) {
+  struct Entry {
+    int node;
+    unsigned lanes;
+  };
+  Entry stack[kStack];
+  int size = 0;
+  stack[size++] = {root, lanes};
+  unsigned unknown = 0;
+  while (size > 0) {
+    const Entry entry = stack[--size];
+    const Node& node = nodes[entry.node];
+    const unsigned asked = entry.lanes & ~unknown;
+    if (asked == 0) continue;
+    const unsigned near = asked & near_box(moved(X, node.center), all(node.radius), box, half);
+    if (near == 0) continue;
+    if (node.children == 0 || size + node.children > kStack) {
+      unknown |= near;
+      if (unknown == lanes) break;
+    } else {
+      for (int child = 0; child < node.children; ++child) stack[size++] = {node.first_child + child, near};
+    }
+  }
+  return unknown;
+}
+
+/// Lanes in which leaves of two trees may meet.
+[[gnu::noinline]] unsigned trees_near(const Node* nodes, int root_a, const Pose& X_a, int root_b, const Pose& X_b,
+                                      unsigned lanes) {
+  struct Entry {
+    int a;
+    int b;
+    unsigned lanes;
+  };
+  Entry stack[kStack];
+  int size = 0;
+  stack[size++] = {root_a, root_b, lanes};
+  unsigned unknown = 0;
+  while (size > 0) {
+    const Entry entry = stack[--size];
+    const Node& a = nodes[entry.a];
+    const Node& b = nodes[entry.b];
+    const unsigned asked = entry.lanes & ~unknown;
+    if (asked == 0) continue;
+    const V3 d = minus(moved(X_a, a.center), moved(X_b, b.center));
+    const V reach = all(a.radius + b.radius);
+    const unsigned near = asked & lanes_of(dot(d, d) <= reach * reach);
+    if (near == 0) continue;
+    const bool divide_a = b.children == 0 || (a.children > 0 && a.radius >= b.radius);
+    const int children = divide_a ? a.children : b.children;
+    if (children == 0 || size + children > kStack) {
+      unknown |= near;
+      if (unknown == lanes) break;
+      continue;
+    }
+    for (int child = 0; child < children; ++child) {
+      stack[size++] =
+          divide_a ? Entry{a.first_child + child, entry.b, near} : Entry{entry.a, b.first_child + child, near};
+    }
+  }
+  return unknown;
+}
+
+/// Lanes in which two parts whose balls meet may touch: boxes, then trees.
+[[gnu::always_inline]] inline unsigned parts_near(const Scratch& scratch, int i, int j, unsigned lanes) {
+  const Model& model = scratch.model;
+  const Part& a = model.parts[i];
+  const Part& b = model.parts[j];
+  const LaneBox& box_a = box_of(scratch, i);
+  const LaneBox& box_b = box_of(scratch, j);
+  lanes = boxes_near(box_a, a.half_extents, box_b, b.half_extents, lanes);
+  if (lanes == 0 || (a.root < 0 && b.root < 0)) return lanes;
+  const Pose& X_a = scratch.X[a.frame];
+  const Pose& X_b = scratch.X[b.frame];
+  if (a.root < 0) return tree_near_box(model.nodes, b.root, X_b, box_a, a.half_extents, lanes);
+  if (b.root < 0) return tree_near_box(model.nodes, a.root, X_a, box_b, b.half_extents, lanes);
+  return trees_near(model.nodes, a.root, X_a, b.root, X_b, lanes);
+}
+
+/// Where the parts of the workspace begin, in floats.
+struct Layout {
+  int poses = 0;
+  int balls;
+  int boxes;
+  int cluster_lanes;
+  int flags;
+  int size;
+};
+[[gnu::always_inline]] inline Layout layout_of(const Model& model) {
+  Layout layout{};
+  layout.balls = layout.poses + model.frame_count * static_cast<int>(sizeof(Pose) / sizeof(float));
+  layout.boxes = layout.balls + model.part_count * static_cast<int>(sizeof(V3) / sizeof(float));
+  layout.cluster_lanes = layout.boxes + model.part_count * static_cast<int>(sizeof(LaneBox) / sizeof(float));
+  layout.flags = layout.cluster_lanes + model.cluster_count * model.part_count;
+  layout.size = layout.flags + (model.part_count + 3) / 4 + 16;
+  return layout;
+}
+
+/// Lanes in which the ball of part a, at center, may meet the ball of part b.
+[[gnu::always_inline]] inline unsigned balls_near(const V3& center, float radius, const V3& other, float other_radius) {
+  const V3 d = minus(center, other);
+  const float reach = radius + other_radius;
+  return lanes_of(dot(d, d) <= all(reach * reach));
+}
+
+[[gnu::always_inline]] inline unsigned ball_near_fixed_box(const V3& center, float radius, const Part& part) {
+  const float* a = part.box_axes;
+  const float* c = part.box_center;
+  const V3 d{center.x - c[0], center.y - c[1], center.z - c[2]};
+  const V x = positive(magnitude(d.x * a[0] + d.y * a[3] + d.z * a[6]) - part.half_extents[0]);
+  const V y = positive(magnitude(d.x * a[1] + d.y * a[4] + d.z * a[7]) - part.half_extents[1]);
+  const V z = positive(magnitude(d.x * a[2] + d.y * a[5] + d.z * a[8]) - part.half_extents[2]);
+  return lanes_of(x * x + y * y + z * z <= all(radius * radius));
+}
+
+/// For each cluster and part outside it: lanes in which the part may meet the cluster's ball.
+[[gnu::always_inline]] inline void fill_clusters(const Model& model, const Pose* X, const V3* balls, unsigned lanes,
+                                                 int* cluster_lanes) {
+  for (int c = 0; c < model.cluster_count; ++c) {
+    const Cluster& cluster = model.clusters[c];
+    const V3 center = moved(X[cluster.frame], cluster.center);
+    int* row = cluster_lanes + c * model.part_count;
+    for (int i = 0; i < model.robot_part_count; ++i) {
+      const bool member = i >= cluster.begin && i < cluster.end;
+      row[i] = static_cast<int>(
+          member ? lanes : lanes & balls_near(center, cluster.radius, balls[i], model.parts[i].ball_radius));
+    }
+    for (int j = model.robot_part_count; j < model.part_count; ++j) {
+      row[j] = static_cast<int>(lanes & ball_near_fixed_box(center, cluster.radius, model.parts[j]));
+    }
+  }
+}
+
+/// The cluster that a part belongs to; -1: none.
+[[gnu::always_inline]] inline int cluster_of(const Model& model, int part) {
+  for (int c = 0; c < model.cluster_count; ++c) {
+    if (part >= model.clusters[c].begin && part < model.clusters[c].end) return c;
+  }
+  return -1;
+}
+
+[[gnu::always_inline]] inline int run_sweep(const Model& model, const Query& query, float* workspace, Unknown* found) {
+  const Layout layout = layout_of(model);
+  Pose* const X = reinterpret_cast<Pose*>(workspace + layout.poses);
+  V3* const balls = reinterpret_cast<V3*>(workspace + layout.balls);
+  int* const cluster_lanes = reinterpret_cast<int*>(workspace + layout.cluster_lanes);
+  const Scratch scratch{model, X, reinterpret_cast<LaneBox*>(workspace + layout.boxes),
+                        reinterpret_cast<bool*>(workspace + layout.flags)};
+  for (int i = 0; i < model.part_count; ++i) scratch.placed[i] = false;
+  place_frames(model, query, X);
+  for (int i = 0; i < model.robot_part_count; ++i)
+    balls[i] = moved(X[model.parts[i].frame], model.parts[i].ball_center);
+  fill_clusters(model, X, balls, query.lanes, cluster_lanes);
+  int count = 0;
+  for (int i = 0; i < model.robot_part_count; ++i) {
+    const int cluster = cluster_of(model, i);
+    const int* const row = cluster < 0 ? nullptr : cluster_lanes + cluster * model.part_count;
+    const V3 center = balls[i];
+    const float radius = model.parts[i].ball_radius;
+    for (int k = model.partners[i].begin; k < model.partners[i].end; ++k) {
+      const int j = model.partner[k];
+      unsigned lanes = row == nullptr ? query.lanes : static_cast<unsigned>(row[j]);
+      if (lanes == 0) continue;
+      const Part& other = model.parts[j];
+      lanes &= j < model.robot_part_count ? balls_near(center, radius, balls[j], other.ball_radius)
+                                          : ball_near_fixed_box(center, radius, other);
+      if (lanes == 0) continue;
+      lanes = parts_near(scratch, i, j, lanes);
+      if (lanes != 0) found[count++] = {i, j, lanes};
+    }
+  }
+  return count;
+}
+
+}  // namespace
+}  // namespace opponens::robot::wide

@@ -1,0 +1,12 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+// Compiled for processors with AVX2 and FMA; called only where there is one.
+#include "robot/wide_sweep.hpp"
+
+namespace opponens::robot::wide {
+
+int sweep_avx2(const Model& model, const Query& query, float* workspace, Unknown* found) {
+  return run_sweep(model, query, workspace, found);
+}
+
+}  // namespace opponens::robot::wide

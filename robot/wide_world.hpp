@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+// Internal to robot/: owns what the wide sweep runs over.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "robot/collision_world.hpp"
+#include "robot/wide_model.hpp"
+
+namespace opponens::robot::wide {
+
+/// Whether this processor has what sweep_avx2 needs.
+bool has_avx2();
+
+/// The single-precision picture of a collision world. A sweep answers for kLanes configurations at a time which pairs
+/// it cannot tell apart; all others are apart for certain. Immutable, thread-safe.
+class World {
+ public:
+  /// fixed_root: the robot's root stays where the scene puts it, so that what does not move against the scene is left
+  /// out (constant_pairs). Otherwise it may be anywhere.
+  World(const CollisionWorld& world, bool fixed_root);
+
+  /// Pairs of parts, in the fixed world, that no joint moves against each other.
+  const std::vector<std::pair<int, int>>& constant_pairs() const { return constant_pairs_; }
+
+  /// Larger joint positions than this, rad or m, are not for the sweep: single precision would not do.
+  static constexpr double kLargestPosition = 1e4;
+
+  /// Whether the sweep's precision holds with the robot's root there.
+  bool reaches(const Eigen::Isometry3d& X_SR) const { return X_SR.translation().norm() <= 0.5 * largest_; }
+
+  /// Writes to `found` every pair that may touch. X_SR: the robot's root in its usual place (identity there).
+  void sweep(const Query& query, std::vector<Unknown>& found, bool portable) const;
+
+  /// m, by which every ball and box is enlarged: at least twice the errors of the sweep's arithmetic. 2e-5 times the
+  /// largest coordinate, of which rounding of angles (2e-7 rad for each joint of a chain, times its reach), of sines
+  /// and of products takes a third at most.
+  double margin() const { return margin_; }
+
+  Model model() const;
+
+ private:
+  void add_frames(const RobotModel& robot);
+  void add_parts(const CollisionWorld& world);
+  void add_pairs(const CollisionWorld& world, bool fixed_root);
+  void add_clusters();
+  int add_tree(const SphereTree& tree, const Eigen::Isometry3d& X_FG);
+  bool out_of_reach(int part, int other) const;
+
+  /// Where a frame's origin can be: within radius of a point of a frame that does not move.
+  struct Reach {
+    int frame;
+    Eigen::Vector3d center;
+    double radius;
+  };
+
+  std::vector<Frame> frames_;
+  std::vector<Reach> reach_;             ///< [frames]
+  std::vector<int> frame_of_link_;       ///< [links]
+  std::vector<Eigen::Isometry3d> X_FL_;  ///< [links]
+  std::vector<Part> parts_;
+  std::vector<Node> nodes_;
+  std::vector<Range> ranges_;
+  std::vector<int> partners_;
+  std::vector<Cluster> clusters_;
+  std::vector<std::pair<int, int>> constant_pairs_;
+  int robot_parts_ = 0;
+  double largest_ = 0.0;  ///< m
+  double margin_ = 0.0;
+};
+
+}  // namespace opponens::robot::wide
