@@ -93,6 +93,7 @@ struct CollisionChecker::World {
     Placement placement(exact, X_WR, q);
     for (const wide::Unknown& pair : unknown) {
       if (!concerns(pair)) continue;
+      if (placement.hulls_apart(pair.a, pair.b)) continue;
       ++asked;
       if (placement.collide(pair.a, pair.b)) return false;
     }

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/require.hpp"
+#include "robot/convex_apart.hpp"
 
 namespace opponens::robot {
 
@@ -120,7 +121,13 @@ bool Placement::collide(int a, int b) {
   if ((at_a.box.center - at_b.box.center).squaredNorm() > reach * reach) return false;
   if (point_box_distance(at_a.box.center, at_b.box) > A.radius() + kCullMargin) return false;
   if (point_box_distance(at_b.box.center, at_a.box) > B.radius() + kCullMargin) return false;
-  return !boxes_apart(at_a.box, at_b.box, kCullMargin) && intersect(A, at_a.X_WG, B, at_b.X_WG);
+  if (boxes_apart(at_a.box, at_b.box, kCullMargin)) return false;
+  return intersect(A, at_a.X_WG, B, at_b.X_WG);
+}
+
+bool Placement::hulls_apart(int a, int b) {
+  return convex_apart(world_.parts[static_cast<std::size_t>(a)].shape, at(a).X_WG,
+                      world_.parts[static_cast<std::size_t>(b)].shape, at(b).X_WG, kCullMargin);
 }
 
 double Placement::separation(int a, int b) {

@@ -57,6 +57,8 @@ class Placement {
 
   /// The exact verdict on a pair: bounding volumes, then the narrow phase.
   bool collide(int a, int b);
+  /// Whether the convex hulls of two parts are apart for certain.
+  bool hulls_apart(int a, int b);
   double separation(int a, int b);
   /// A lower bound of the separation from bounding volumes, m.
   double distance_bound(int a, int b);

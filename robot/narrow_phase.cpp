@@ -75,6 +75,11 @@ struct CollisionShape::Data {
     return *cover_made;
   }
 
+  const HullVertices& hull() const {
+    std::call_once(hull_once, [this] { hull_made = hull_vertices(*mesh); });
+    return hull_made;
+  }
+
   bool contains(const Eigen::Vector3d& p) const {
     if (const auto* box = std::get_if<Box>(&shape)) return (2.0 * p.cwiseAbs() - box->size).maxCoeff() <= 0.0;
     if (const auto* sphere = std::get_if<Sphere>(&shape)) return p.norm() <= sphere->radius;
@@ -88,6 +93,8 @@ struct CollisionShape::Data {
   mutable std::once_flag region_once;
   mutable std::once_flag fcl_once;
   mutable std::once_flag cover_once;
+  mutable std::once_flag hull_once;
+  mutable HullVertices hull_made;
   mutable std::shared_ptr<const SphereTree> cover_made;
   mutable std::unique_ptr<const SolidRegion> region_made;
   mutable std::shared_ptr<fcl::CollisionGeometryd> fcl_made;
@@ -224,7 +231,14 @@ CollisionShape::CollisionShape(const Shape& shape) {
 
 const SphereTree& CollisionShape::cover() const { return data_->cover(); }
 
-bool CollisionShape::is_box() const { return std::holds_alternative<Box>(data_->shape); }
+const HullVertices& CollisionShape::hull() const {
+  require(data_->mesh != nullptr, "CollisionShape: only a mesh has hull vertices");
+  return data_->hull();
+}
+
+double CollisionShape::hull_rounding() const { return data_->mesh == nullptr ? 0.0 : data_->hull().rounding; }
+
+const Shape& CollisionShape::shape() const { return data_->shape; }
 
 bool CollisionShape::open_surface() const { return data_->mesh != nullptr && data_->region().open(); }
 

@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "robot/convex_hull.hpp"
 #include "robot/geometry.hpp"
 #include "robot/sphere_tree.hpp"
 
@@ -30,8 +31,11 @@ class CollisionShape {
 
   /// Balls that contain the solid.
   const SphereTree& cover() const;
-  /// Whether the bounding box is the shape itself.
-  bool is_box() const;
+  /// Vertices of a mesh's convex hull; throws std::invalid_argument for a primitive.
+  const HullVertices& hull() const;
+  /// m; the hull of the shape lies within this of what hull() says.
+  double hull_rounding() const;
+  const Shape& shape() const;
 
   /// A mesh with a component that is not closed: that component is a surface without an inside.
   bool open_surface() const;

@@ -22,6 +22,12 @@ struct Frame {
   float translation[3];
 };
 
+enum class Form {
+  box,       ///< the box is the shape itself
+  cylinder,  ///< about the box's z axis
+  other,     ///< anything in the box and in its sphere tree
+};
+
 /// One shape, fixed to a frame. Radii and half extents are enlarged by the margin for rounding.
 struct Part {
   int frame;
@@ -30,7 +36,8 @@ struct Part {
   float box_center[3];
   float box_axes[9];  ///< row-major; columns are the box's axes in the frame
   float half_extents[3];
-  int root;  ///< first node of its sphere tree; -1: the shape is its box, which no cover could fit better
+  Form form;
+  int root;  ///< first node of its sphere tree; unused where boxes and cylinders are the shape
 };
 
 /// A ball of a sphere tree, in the part's frame.
@@ -92,5 +99,9 @@ int workspace_size(const Model& model);
 /// and FMA.
 int sweep(const Model& model, const Query& query, float* workspace, Unknown* found);
 int sweep_avx2(const Model& model, const Query& query, float* workspace, Unknown* found);
+
+/// Index of the point farthest along n of a padded list, [3 x count]: one coordinate after the other.
+int farthest_portable(const float* xyz, int count, const float* n);
+int farthest_avx2(const float* xyz, int count, const float* n);
 
 }  // namespace opponens::robot::wide

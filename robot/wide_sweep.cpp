@@ -10,4 +10,6 @@ int sweep(const Model& model, const Query& query, float* workspace, Unknown* fou
   return run_sweep(model, query, workspace, found);
 }
 
+int farthest_portable(const float* xyz, int count, const float* n) { return farthest_point(xyz, count, n); }
+
 }  // namespace opponens::robot::wide

@@ -29,6 +29,9 @@ struct Pose {
   V3 p;
 };
 
+/// Added to the size of a cosine: more than its rounding.
+constexpr float kParallel = 1e-6F;
+
 /// A box with lanes: axes by columns.
 struct LaneBox {
   V3 center;
@@ -169,30 +172,42 @@ struct Scratch {
   return lanes_of(x * x + y * y + z * z <= radius * radius);
 }
 
-/// Lanes in which none of the 15 axes of the separating axis theorem keeps two boxes apart (Gottschalk 1996). Cross
-/// products that nearly vanish say nothing wrong: both sides of the test shrink with them, but for the margin, which
-/// enlarges the boxes.
+/// Lane by lane, for want of a vector square root that is the same everywhere.
+[[gnu::always_inline]] inline V root(const V& v) {
+  V r;
+  for (int i = 0; i < kLanes; ++i) r[i] = __builtin_sqrtf(v[i]);
+  return r;
+}
+
+/// How far a box, or the cylinder about its z axis, reaches along a direction with components x, y, z >= 0 in it.
+template <bool Round>
+[[gnu::always_inline]] inline V extent(const float* h, const V& x, const V& y, const V& z) {
+  return Round ? V(h[0] * root(x * x + y * y) + h[2] * z) : V(h[0] * x + h[1] * y + h[2] * z);
+}
+
+/// Lanes in which none of these directions keeps two boxes, or the cylinders in them, apart: the 15 axes of the
+/// separating axis theorem (Gottschalk 1996), and for a cylinder that across its axis towards the other's center. Cross
+/// products that nearly vanish say nothing wrong: both sides of the test shrink with them, but for what enlarges the
+/// shapes.
+template <bool RoundA, bool RoundB>
 [[gnu::noinline]] unsigned boxes_near(const LaneBox& a, const float* h, const LaneBox& b, const float* g,
                                       unsigned lanes) {
   const V3 d = minus(b.center, a.center);
   V R[3][3];
   V Q[3][3];
   V t[3];
+  V s[3];
   for (int i = 0; i < 3; ++i) {
     t[i] = dot(d, a.axis[i]);
+    s[i] = dot(d, b.axis[i]);
     for (int j = 0; j < 3; ++j) {
       R[i][j] = dot(a.axis[i], b.axis[j]);
-      Q[i][j] = magnitude(R[i][j]) + 1e-6F;
+      Q[i][j] = magnitude(R[i][j]) + kParallel;
     }
   }
   Bits apart{};
-  for (int i = 0; i < 3; ++i) {
-    apart |= magnitude(t[i]) > h[i] + Q[i][0] * g[0] + Q[i][1] * g[1] + Q[i][2] * g[2];
-  }
-  for (int j = 0; j < 3; ++j) {
-    const V along = t[0] * R[0][j] + t[1] * R[1][j] + t[2] * R[2][j];
-    apart |= magnitude(along) > g[j] + Q[0][j] * h[0] + Q[1][j] * h[1] + Q[2][j] * h[2];
-  }
+  for (int i = 0; i < 3; ++i) apart |= magnitude(t[i]) > h[i] + extent<RoundB>(g, Q[i][0], Q[i][1], Q[i][2]);
+  for (int j = 0; j < 3; ++j) apart |= magnitude(s[j]) > g[j] + extent<RoundA>(h, Q[0][j], Q[1][j], Q[2][j]);
   lanes &= ~lanes_of(apart);
   if (lanes == 0) return 0;
   for (int i = 0; i < 3; ++i) {
@@ -201,9 +216,31 @@ struct Scratch {
     for (int j = 0; j < 3; ++j) {
       const int j1 = (j + 1) % 3;
       const int j2 = (j + 2) % 3;
-      const V reach = h[i1] * Q[i2][j] + h[i2] * Q[i1][j] + g[j1] * Q[i][j2] + g[j2] * Q[i][j1];
-      apart |= magnitude(t[i2] * R[i1][j] - t[i1] * R[i2][j]) > reach;
+      V in_a[3];
+      V in_b[3];
+      in_a[i] = V{};
+      in_a[i1] = Q[i2][j];
+      in_a[i2] = Q[i1][j];
+      in_b[j] = V{};
+      in_b[j1] = Q[i][j2];
+      in_b[j2] = Q[i][j1];
+      apart |= magnitude(t[i2] * R[i1][j] - t[i1] * R[i2][j]) >
+               extent<RoundA>(h, in_a[0], in_a[1], in_a[2]) + extent<RoundB>(g, in_b[0], in_b[1], in_b[2]);
     }
+  }
+  if (RoundA) {  // t[0] A_x + t[1] A_y
+    const V x = magnitude(t[0] * R[0][0] + t[1] * R[1][0]) + kParallel;
+    const V y = magnitude(t[0] * R[0][1] + t[1] * R[1][1]) + kParallel;
+    const V z = magnitude(t[0] * R[0][2] + t[1] * R[1][2]) + kParallel;
+    const V across = t[0] * t[0] + t[1] * t[1];
+    apart |= across > h[0] * root(across) + extent<RoundB>(g, x, y, z);
+  }
+  if (RoundB) {  // s[0] B_x + s[1] B_y
+    const V x = magnitude(s[0] * R[0][0] + s[1] * R[0][1]) + kParallel;
+    const V y = magnitude(s[0] * R[1][0] + s[1] * R[1][1]) + kParallel;
+    const V z = magnitude(s[0] * R[2][0] + s[1] * R[2][1]) + kParallel;
+    const V across = s[0] * s[0] + s[1] * s[1];
+    apart |= across > g[0] * root(across) + extent<RoundA>(h, x, y, z);
   }
   return lanes & ~lanes_of(apart);
 }
@@ -275,19 +312,27 @@ constexpr int kStack = 256;  ///< entries of a descent; wider trees end it with 
   return unknown;
 }
 
-/// Lanes in which two parts whose balls meet may touch: boxes, then trees.
+/// Lanes in which two parts whose balls meet may touch: boxes and cylinders, then trees.
 [[gnu::always_inline]] inline unsigned parts_near(const Scratch& scratch, int i, int j, unsigned lanes) {
   const Model& model = scratch.model;
   const Part& a = model.parts[i];
   const Part& b = model.parts[j];
   const LaneBox& box_a = box_of(scratch, i);
   const LaneBox& box_b = box_of(scratch, j);
-  lanes = boxes_near(box_a, a.half_extents, box_b, b.half_extents, lanes);
-  if (lanes == 0 || (a.root < 0 && b.root < 0)) return lanes;
+  const float* h = a.half_extents;
+  const float* g = b.half_extents;
+  if (a.form == Form::cylinder) {
+    lanes = b.form == Form::cylinder ? boxes_near<true, true>(box_a, h, box_b, g, lanes)
+                                     : boxes_near<true, false>(box_a, h, box_b, g, lanes);
+  } else {
+    lanes = b.form == Form::cylinder ? boxes_near<false, true>(box_a, h, box_b, g, lanes)
+                                     : boxes_near<false, false>(box_a, h, box_b, g, lanes);
+  }
+  if (lanes == 0 || (a.form != Form::other && b.form != Form::other)) return lanes;
   const Pose& X_a = scratch.X[a.frame];
   const Pose& X_b = scratch.X[b.frame];
-  if (a.root < 0) return tree_near_box(model.nodes, b.root, X_b, box_a, a.half_extents, lanes);
-  if (b.root < 0) return tree_near_box(model.nodes, a.root, X_a, box_b, b.half_extents, lanes);
+  if (a.form != Form::other) return tree_near_box(model.nodes, b.root, X_b, box_a, h, lanes);
+  if (b.form != Form::other) return tree_near_box(model.nodes, a.root, X_a, box_b, g, lanes);
   return trees_near(model.nodes, a.root, X_a, b.root, X_b, lanes);
 }
 
@@ -384,6 +429,28 @@ struct Layout {
     }
   }
   return count;
+}
+
+[[gnu::always_inline]] inline int farthest_point(const float* xyz, int count, const float* n) {
+  typedef float Unaligned __attribute__((vector_size(4 * kLanes), aligned(4), may_alias));
+  V best = all(-3e38F);
+  Bits at{};
+  Bits index{0, 1, 2, 3, 4, 5, 6, 7};
+  for (int i = 0; i < count; i += kLanes) {
+    const V x = *reinterpret_cast<const Unaligned*>(xyz + i);
+    const V y = *reinterpret_cast<const Unaligned*>(xyz + count + i);
+    const V z = *reinterpret_cast<const Unaligned*>(xyz + 2 * count + i);
+    const V along = x * n[0] + y * n[1] + z * n[2];
+    const Bits better = along > best;
+    best = better ? along : best;
+    at = better ? index : at;
+    index += kLanes;
+  }
+  int lane = 0;
+  for (int i = 1; i < kLanes; ++i) {
+    if (best[i] > best[lane]) lane = i;
+  }
+  return at[lane];
 }
 
 }  // namespace

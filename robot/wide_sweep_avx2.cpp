@@ -9,4 +9,6 @@ int sweep_avx2(const Model& model, const Query& query, float* workspace, Unknown
   return run_sweep(model, query, workspace, found);
 }
 
+int farthest_avx2(const float* xyz, int count, const float* n) { return farthest_point(xyz, count, n); }
+
 }  // namespace opponens::robot::wide

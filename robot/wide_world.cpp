@@ -34,6 +34,16 @@ Eigen::Matrix3d z_onto(const Vector3d& axis) {
   return Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), axis).toRotationMatrix();
 }
 
+Form form_of(const CollisionShape& shape) {
+  if (std::holds_alternative<Box>(shape.shape())) return Form::box;
+  return std::holds_alternative<Cylinder>(shape.shape()) ? Form::cylinder : Form::other;
+}
+
+SphereTree::Node bounding_ball(const CollisionShape& shape) {
+  if (form_of(shape) == Form::other) return shape.cover().nodes[0];
+  return {shape.center(), shape.radius(), 0, 0};
+}
+
 double largest_coordinate(const CollisionPart& part, const Isometry3d& X) {
   return (X * part.X_BG * part.shape.center()).norm() + part.shape.half_extents().norm();
 }
@@ -46,6 +56,14 @@ bool has_avx2() {
 #else
   return false;
 #endif
+}
+
+int farthest(const float* xyz, int count, const float* n) {
+#if defined(OPPONENS_AVX2)
+  static const bool fast = has_avx2();
+  if (fast) return farthest_avx2(xyz, count, n);
+#endif
+  return farthest_portable(xyz, count, n);
 }
 
 World::World(const CollisionWorld& world, bool fixed_root) : robot_parts_(world.robot_parts) {
@@ -119,7 +137,7 @@ void World::add_parts(const CollisionWorld& world) {
     const auto body = static_cast<std::size_t>(source.body);
     const bool fixed = world.of_scene(static_cast<int>(i));
     const Isometry3d X_FG = (fixed ? X_RW : X_FL_[body]) * source.X_BG;
-    const SphereTree::Node& ball = source.shape.cover().nodes[0];
+    const SphereTree::Node ball = bounding_ball(source.shape);
     Part part;
     part.frame = fixed ? kWorld : frame_of_link_[body];
     store(X_FG * ball.center, part.ball_center);
@@ -127,7 +145,8 @@ void World::add_parts(const CollisionWorld& world) {
     store(X_FG * source.shape.center(), part.box_center);
     store_rotation(X_FG.linear(), part.box_axes);
     for (int k = 0; k < 3; ++k) part.half_extents[k] = enlarged(source.shape.half_extents()[k], margin_);
-    part.root = source.shape.is_box() ? -1 : add_tree(source.shape.cover(), X_FG);
+    part.form = form_of(source.shape);
+    part.root = part.form == Form::other ? add_tree(source.shape.cover(), X_FG) : -1;
     parts_.push_back(part);
   }
 }

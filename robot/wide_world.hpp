@@ -13,8 +13,11 @@
 
 namespace opponens::robot::wide {
 
-/// Whether this processor has what sweep_avx2 needs.
+/// Whether this processor has what the AVX2 paths need.
 bool has_avx2();
+
+/// Index of the point farthest along n of a padded list, by the instructions that the processor has.
+int farthest(const float* xyz, int count, const float* n);
 
 /// The single-precision picture of a collision world. A sweep answers for kLanes configurations at a time which pairs
 /// it cannot tell apart; all others are apart for certain. Immutable, thread-safe.

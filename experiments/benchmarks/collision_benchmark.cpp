@@ -14,6 +14,7 @@ int main() {
   const std::filesystem::path root = OPPONENS_SOURCE_DIR;
   setenv("OPPONENS_SHARED_DATA", OPPONENS_SHARED_DATA, 0);
   for (const char* kind : {"urdf", "visual"}) {
+    if (getenv("KIND") && std::string(getenv("KIND")) != kind) continue;
     double t0 = cpu();
     auto problem = shelf_problem(root / ("tests/data/robots/paper_lab_ur5_allegro_right_" + std::string(kind) + ".yaml"),
                                  root / "models/scenes/cylinder_shelf.yaml");

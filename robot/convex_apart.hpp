@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "robot/narrow_phase.hpp"
+
+namespace opponens::robot {
+
+/// Whether a plane was found that keeps the convex hulls of two shapes at least `margin` (m) apart, by the steps of
+/// Gilbert, Johnson and Keerthi (1988, doi:10.1109/56.2083) on the support points of their difference, 20 at most. Not
+/// found does not mean that they meet. Boxes, cylinders and spheres are their own hulls.
+bool convex_apart(const CollisionShape& a, const Eigen::Isometry3d& X_WA, const CollisionShape& b,
+                  const Eigen::Isometry3d& X_WB, double margin);
+
+}  // namespace opponens::robot

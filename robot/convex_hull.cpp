@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "robot/convex_hull.hpp"
+
+#include <cstdio>
+#include <limits>
+#include <memory>
+#include <optional>
+
+extern "C" {
+#include <libqhull_r/qhull_ra.h>
+}
+
+namespace opponens::robot {
+
+namespace {
+
+constexpr int kPadding = 8;
+
+struct CloseFile {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+
+/// Indices of the hull's vertices; nullopt when qhull finds no volume.
+std::optional<std::vector<Eigen::Index>> hull_indices(const Eigen::Matrix3Xd& points) {
+  if (points.cols() < 4) return std::nullopt;
+  Eigen::Matrix3Xd copy = points;
+  const std::unique_ptr<std::FILE, CloseFile> sink(std::fopen("/dev/null", "w"));  // qhull reports flat sets at length
+  qhT context;
+  qh_zero(&context, sink.get());
+  char command[] = "qhull Qt";
+  const bool built =
+      qh_new_qhull(&context, 3, static_cast<int>(copy.cols()), copy.data(), false, command, nullptr, sink.get()) == 0;
+  std::vector<Eigen::Index> indices;
+  if (built) {
+    for (const vertexT* vertex = context.vertex_list; vertex != nullptr && vertex->next != nullptr;
+         vertex = vertex->next) {
+      indices.push_back((vertex->point - copy.data()) / 3);
+    }
+  }
+  qh_freeqhull(&context, !qh_ALL);
+  int current = 0;
+  int total = 0;
+  qh_memfreeshort(&context, &current, &total);
+  if (!built) return std::nullopt;
+  return indices;
+}
+
+}  // namespace
+
+HullVertices hull_vertices(const TriangleMesh& mesh) {
+  std::vector<Eigen::Index> indices;
+  if (auto found = hull_indices(mesh.vertices)) {
+    indices = std::move(*found);
+  } else {
+    for (Eigen::Index i = 0; i < mesh.vertices.cols(); ++i) indices.push_back(i);
+  }
+  HullVertices hull;
+  hull.count = (static_cast<int>(indices.size()) + kPadding - 1) / kPadding * kPadding;
+  const auto count = static_cast<std::size_t>(hull.count);
+  hull.xyz.resize(3 * count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Eigen::Index source = indices[i < indices.size() ? i : 0];
+    for (std::size_t k = 0; k < 3; ++k) {
+      hull.xyz[k * count + i] = static_cast<float>(mesh.vertices(static_cast<Eigen::Index>(k), source));
+    }
+  }
+  // Of storing, of qhull's merged facets, and of the farthest vertex found in single precision.
+  hull.rounding = 16.0 * std::numeric_limits<float>::epsilon() * mesh.vertices.cwiseAbs().maxCoeff();
+  return hull;
+}
+
+}  // namespace opponens::robot
