@@ -6,6 +6,7 @@
 #include <array>
 #include <limits>
 #include <set>
+#include <span>
 
 #include "core/require.hpp"
 #include "robot/collision_world.hpp"
@@ -86,7 +87,7 @@ struct CollisionChecker::World {
   }
 
   /// Whether no unknown pair of a lane collides.
-  bool settle(const std::vector<wide::Unknown>& unknown, unsigned lane, const Eigen::Isometry3d& X_WR,
+  bool settle(std::span<const wide::Unknown> unknown, unsigned lane, const Eigen::Isometry3d& X_WR,
               const Eigen::Ref<const Eigen::VectorXd>& q, std::int64_t& asked) const {
     const auto concerns = [lane](const wide::Unknown& pair) { return (pair.lanes >> lane & 1U) != 0; };
     if (std::none_of(unknown.begin(), unknown.end(), concerns)) return true;
@@ -106,8 +107,9 @@ struct CollisionChecker::World {
   void sweep_rows(const ConfigurationBatch& batch, int first, int count, const Verdict& verdict,
                   CollisionCounts& counts) const {
     static const std::array<float, 12> kUsual = wide_pose(Eigen::Isometry3d::Identity());
-    thread_local std::vector<wide::Unknown> unknown;
-    fixed.sweep(wide_query(batch, first, count, kUsual), unknown, portable);
+    thread_local wide::World::Buffers buffers;
+    const int pairs = fixed.sweep(wide_query(batch, first, count, kUsual), buffers, portable);
+    const std::span<const wide::Unknown> unknown(buffers.found.data(), static_cast<std::size_t>(pairs));
     counts.configurations += count;
     for (int row = first; row < first + count; ++row) {
       const Eigen::Map<const Eigen::VectorXd> q(batch.row(row).data(), batch.cols());
@@ -153,8 +155,9 @@ bool CollisionChecker::free(const Eigen::Isometry3d& X_WR, const Eigen::Ref<cons
   if (too_large(q) || !w.flying.reaches(X_SR)) return w.exact_free(X_WR, q);
   const std::array<float, 12> root = wide_pose(X_SR);
   const ConfigurationBatch row = q.transpose();
-  thread_local std::vector<wide::Unknown> unknown;
-  w.flying.sweep(wide_query(row, 0, 1, root), unknown, w.portable);
+  thread_local wide::World::Buffers buffers;
+  const int pairs = w.flying.sweep(wide_query(row, 0, 1, root), buffers, w.portable);
+  const std::span<const wide::Unknown> unknown(buffers.found.data(), static_cast<std::size_t>(pairs));
   std::int64_t asked = 0;
   return !w.constant_self_collision && w.settle(unknown, 0, X_WR, q, asked);
 }

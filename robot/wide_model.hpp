@@ -48,22 +48,43 @@ struct Node {
   int children;
 };
 
-/// A range of partners in a list.
-struct Range {
-  int begin;
-  int end;
-};
-
-/// Parts [begin, end) move within a ball around a point of a frame, whatever the joints between do.
-struct Cluster {
+/// Parts of one frame that lie close together, in one ball.
+struct Group {
   int frame;
   float center[3];
   float radius;
-  int begin;
+};
+
+/// Two parts to check, the first one of the robot.
+struct PartPair {
+  int a;
+  int b;
+  float squared_reach;  ///< m^2, of the sum of the balls' radii
+};
+
+/// A group and a partner (another group, or a part of the scene): which of their parts to check against each other.
+struct GroupPair {
+  float squared_reach;  ///< m^2, of the sum of the radii; of a group alone where the partner is of the scene
+  int begin;            ///< of part pairs
   int end;
 };
 
+/// A box of the scene, each number repeated for all lanes: center, half extents, and the axes by columns.
+struct alignas(4 * kLanes) SceneBox {
+  float center[3][kLanes];
+  float half[3][kLanes];
+  float axes[9][kLanes];
+  bool aligned;  ///< with the root's axes
+};
+
+/// Up to kLanes boxes aligned with the root's axes, side by side. Unused ones are far away.
+struct alignas(4 * kLanes) BoxRow {
+  float center[3][kLanes];
+  float half[3][kLanes];
+};
+
 /// Views of arrays; the sweep allocates nothing and calls nothing that is compiled elsewhere.
+///
 struct Model {
   const Frame* frames;
   int frame_count;
@@ -71,10 +92,15 @@ struct Model {
   int robot_part_count;
   int part_count;
   const Node* nodes;
-  const Range* partners;  ///< [robot parts] ranges of pair_partner: later parts of the robot, then parts of the scene
-  const int* partner;     ///< part index
-  const Cluster* clusters;
-  int cluster_count;
+  const Group* groups;  ///< of the robot
+  int group_count;
+  int group_rows;               ///< rows of kLanes groups
+  const SceneBox* scene_boxes;  ///< [parts of the scene]
+  const BoxRow* scene_rows;     ///< around them
+  int scene_row_count;
+  const unsigned char* wanted;  ///< [groups x (group_rows + scene rows)] bits of the partners to check in each row
+  const GroupPair* pairs;       ///< [groups x (group_rows + scene rows) x kLanes]
+  const PartPair* part_pairs;
 };
 
 /// A pair that the sweep could not tell apart in some lanes.

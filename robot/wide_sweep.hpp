@@ -144,8 +144,9 @@ struct LaneBox {
 struct Scratch {
   const Model& model;
   const Pose* X;
-  LaneBox* boxes;  ///< [parts]
-  bool* placed;    ///< [parts]
+  const V3* balls;  ///< [parts] centers
+  LaneBox* boxes;   ///< [parts]
+  bool* placed;     ///< [parts] boxes
 };
 
 [[gnu::always_inline]] inline const LaneBox& box_of(const Scratch& scratch, int index) {
@@ -340,95 +341,133 @@ constexpr int kStack = 256;  ///< entries of a descent; wider trees end it with 
 struct Layout {
   int poses = 0;
   int balls;
+  int centers;
+  int rows;
   int boxes;
-  int cluster_lanes;
   int flags;
   int size;
 };
 [[gnu::always_inline]] inline Layout layout_of(const Model& model) {
   Layout layout{};
   layout.balls = layout.poses + model.frame_count * static_cast<int>(sizeof(Pose) / sizeof(float));
-  layout.boxes = layout.balls + model.part_count * static_cast<int>(sizeof(V3) / sizeof(float));
-  layout.cluster_lanes = layout.boxes + model.part_count * static_cast<int>(sizeof(LaneBox) / sizeof(float));
-  layout.flags = layout.cluster_lanes + model.cluster_count * model.part_count;
-  layout.size = layout.flags + (model.part_count + 3) / 4 + 16;
+  layout.centers = layout.balls + model.part_count * static_cast<int>(sizeof(V3) / sizeof(float));
+  layout.rows = layout.centers + model.group_count * static_cast<int>(sizeof(V3) / sizeof(float));
+  layout.boxes = layout.rows + model.group_rows * static_cast<int>(sizeof(BoxRow) / sizeof(float));
+  layout.flags = layout.boxes + model.part_count * static_cast<int>(sizeof(LaneBox) / sizeof(float));
+  layout.size = layout.flags + (model.part_count + 3) / 4;
   return layout;
 }
 
-/// Lanes in which the ball of part a, at center, may meet the ball of part b.
-[[gnu::always_inline]] inline unsigned balls_near(const V3& center, float radius, const V3& other, float other_radius) {
-  const V3 d = minus(center, other);
-  const float reach = radius + other_radius;
-  return lanes_of(dot(d, d) <= all(reach * reach));
+[[gnu::always_inline]] inline const V& lanes_at(const float* numbers) { return *reinterpret_cast<const V*>(numbers); }
+
+/// Whether a ball may meet a box of the scene, by lane.
+[[gnu::always_inline]] inline Bits near_scene_box(const V3& center, const V& squared_radius, const SceneBox& box) {
+  V3 d{center.x - lanes_at(box.center[0]), center.y - lanes_at(box.center[1]), center.z - lanes_at(box.center[2])};
+  if (!box.aligned) {
+    d = {d.x * lanes_at(box.axes[0]) + d.y * lanes_at(box.axes[3]) + d.z * lanes_at(box.axes[6]),
+         d.x * lanes_at(box.axes[1]) + d.y * lanes_at(box.axes[4]) + d.z * lanes_at(box.axes[7]),
+         d.x * lanes_at(box.axes[2]) + d.y * lanes_at(box.axes[5]) + d.z * lanes_at(box.axes[8])};
+  }
+  const V x = positive(magnitude(d.x) - lanes_at(box.half[0]));
+  const V y = positive(magnitude(d.y) - lanes_at(box.half[1]));
+  const V z = positive(magnitude(d.z) - lanes_at(box.half[2]));
+  return x * x + y * y + z * z <= squared_radius;
 }
 
-[[gnu::always_inline]] inline unsigned ball_near_fixed_box(const V3& center, float radius, const Part& part) {
-  const float* a = part.box_axes;
-  const float* c = part.box_center;
-  const V3 d{center.x - c[0], center.y - c[1], center.z - c[2]};
-  const V x = positive(magnitude(d.x * a[0] + d.y * a[3] + d.z * a[6]) - part.half_extents[0]);
-  const V y = positive(magnitude(d.x * a[1] + d.y * a[4] + d.z * a[7]) - part.half_extents[1]);
-  const V z = positive(magnitude(d.x * a[2] + d.y * a[5] + d.z * a[8]) - part.half_extents[2]);
-  return lanes_of(x * x + y * y + z * z <= all(radius * radius));
-}
+/// Where the pairs that may touch are written.
+struct Output {
+  Unknown* found;
+  int count;
+};
 
-/// For each cluster and part outside it: lanes in which the part may meet the cluster's ball.
-[[gnu::always_inline]] inline void fill_clusters(const Model& model, const Pose* X, const V3* balls, unsigned lanes,
-                                                 int* cluster_lanes) {
-  for (int c = 0; c < model.cluster_count; ++c) {
-    const Cluster& cluster = model.clusters[c];
-    const V3 center = moved(X[cluster.frame], cluster.center);
-    int* row = cluster_lanes + c * model.part_count;
-    for (int i = 0; i < model.robot_part_count; ++i) {
-      const bool member = i >= cluster.begin && i < cluster.end;
-      row[i] = static_cast<int>(
-          member ? lanes : lanes & balls_near(center, cluster.radius, balls[i], model.parts[i].ball_radius));
-    }
-    for (int j = model.robot_part_count; j < model.part_count; ++j) {
-      row[j] = static_cast<int>(lanes & ball_near_fixed_box(center, cluster.radius, model.parts[j]));
-    }
+/// The parts of two groups whose balls meet in some lanes.
+[[gnu::noinline]] void check_parts(const Scratch& scratch, int begin, int end, unsigned lanes, Output& output) {
+  for (int k = begin; k < end; ++k) {
+    const PartPair& pair = scratch.model.part_pairs[k];
+    const V3 d = minus(scratch.balls[pair.a], scratch.balls[pair.b]);
+    unsigned near = lanes & lanes_of(dot(d, d) <= all(pair.squared_reach));
+    if (near != 0) near = parts_near(scratch, pair.a, pair.b, near);
+    if (near != 0) output.found[output.count++] = {pair.a, pair.b, near};
   }
 }
 
-/// The cluster that a part belongs to; -1: none.
-[[gnu::always_inline]] inline int cluster_of(const Model& model, int part) {
-  for (int c = 0; c < model.cluster_count; ++c) {
-    if (part >= model.clusters[c].begin && part < model.clusters[c].end) return c;
+[[gnu::always_inline]] inline V lesser(const V& a, const V& b) { return a < b ? a : b; }
+[[gnu::always_inline]] inline V greater(const V& a, const V& b) { return a > b ? a : b; }
+
+/// Least of all lanes, in each.
+[[gnu::always_inline]] inline V least_of(V v) {
+  v = lesser(v, __builtin_shuffle(v, Bits{4, 5, 6, 7, 0, 1, 2, 3}));
+  v = lesser(v, __builtin_shuffle(v, Bits{2, 3, 0, 1, 6, 7, 4, 5}));
+  return lesser(v, __builtin_shuffle(v, Bits{1, 0, 3, 2, 5, 4, 7, 6}));
+}
+
+/// Writes the box around a group's balls of all lanes into its place in a row.
+[[gnu::always_inline]] inline void enclose(const V3& center, float radius, BoxRow& row, int place) {
+  const V* const coordinate[3] = {&center.x, &center.y, &center.z};
+  for (int axis = 0; axis < 3; ++axis) {
+    const float low = least_of(*coordinate[axis])[0];
+    const float high = -least_of(-*coordinate[axis])[0];
+    row.center[axis][place] = 0.5F * (low + high);
+    row.half[axis][place] = 0.5F * (high - low) + radius;
   }
-  return -1;
+}
+
+/// Which boxes of a row overlap the given one, as bits.
+[[gnu::always_inline]] inline unsigned overlapping(const BoxRow& row, const float (&center)[3],
+                                                   const float (&half)[3]) {
+  Bits overlap = magnitude(lanes_at(row.center[0]) - center[0]) <= lanes_at(row.half[0]) + half[0];
+  overlap &= magnitude(lanes_at(row.center[1]) - center[1]) <= lanes_at(row.half[1]) + half[1];
+  overlap &= magnitude(lanes_at(row.center[2]) - center[2]) <= lanes_at(row.half[2]) + half[2];
+  return lanes_of(overlap);
 }
 
 [[gnu::always_inline]] inline int run_sweep(const Model& model, const Query& query, float* workspace, Unknown* found) {
   const Layout layout = layout_of(model);
   Pose* const X = reinterpret_cast<Pose*>(workspace + layout.poses);
   V3* const balls = reinterpret_cast<V3*>(workspace + layout.balls);
-  int* const cluster_lanes = reinterpret_cast<int*>(workspace + layout.cluster_lanes);
-  const Scratch scratch{model, X, reinterpret_cast<LaneBox*>(workspace + layout.boxes),
+  V3* const centers = reinterpret_cast<V3*>(workspace + layout.centers);
+  BoxRow* const rows = reinterpret_cast<BoxRow*>(workspace + layout.rows);
+  const Scratch scratch{model, X, balls, reinterpret_cast<LaneBox*>(workspace + layout.boxes),
                         reinterpret_cast<bool*>(workspace + layout.flags)};
   for (int i = 0; i < model.part_count; ++i) scratch.placed[i] = false;
   place_frames(model, query, X);
   for (int i = 0; i < model.robot_part_count; ++i)
     balls[i] = moved(X[model.parts[i].frame], model.parts[i].ball_center);
-  fill_clusters(model, X, balls, query.lanes, cluster_lanes);
-  int count = 0;
-  for (int i = 0; i < model.robot_part_count; ++i) {
-    const int cluster = cluster_of(model, i);
-    const int* const row = cluster < 0 ? nullptr : cluster_lanes + cluster * model.part_count;
-    const V3 center = balls[i];
-    const float radius = model.parts[i].ball_radius;
-    for (int k = model.partners[i].begin; k < model.partners[i].end; ++k) {
-      const int j = model.partner[k];
-      unsigned lanes = row == nullptr ? query.lanes : static_cast<unsigned>(row[j]);
-      if (lanes == 0) continue;
-      const Part& other = model.parts[j];
-      lanes &= j < model.robot_part_count ? balls_near(center, radius, balls[j], other.ball_radius)
-                                          : ball_near_fixed_box(center, radius, other);
-      if (lanes == 0) continue;
-      lanes = parts_near(scratch, i, j, lanes);
-      if (lanes != 0) found[count++] = {i, j, lanes};
+  for (int i = model.robot_part_count; i < model.part_count; ++i) {
+    const float* c = model.parts[i].ball_center;
+    balls[i] = {all(c[0]), all(c[1]), all(c[2])};
+  }
+  for (int g = 0; g < model.group_count; ++g) {
+    centers[g] = moved(X[model.groups[g].frame], model.groups[g].center);
+    enclose(centers[g], model.groups[g].radius, rows[g / kLanes], g % kLanes);
+  }
+  Output output{found, 0};
+  const int row_count = model.group_rows + model.scene_row_count;
+  for (int g = 0; g < model.group_count; ++g) {
+    const BoxRow& own = rows[g / kLanes];
+    const float center[3] = {own.center[0][g % kLanes], own.center[1][g % kLanes], own.center[2][g % kLanes]};
+    const float half[3] = {own.half[0][g % kLanes], own.half[1][g % kLanes], own.half[2][g % kLanes]};
+    for (int r = 0; r < row_count; ++r) {
+      const bool scene = r >= model.group_rows;
+      unsigned bits = model.wanted[g * row_count + r];
+      if (bits == 0) continue;
+      bits &= overlapping(scene ? model.scene_rows[r - model.group_rows] : rows[r], center, half);
+      for (; bits != 0; bits &= bits - 1) {
+        const int place = __builtin_ctz(bits);
+        const GroupPair& pair = model.pairs[(g * row_count + r) * kLanes + place];
+        unsigned near = query.lanes;
+        if (scene) {
+          const SceneBox& box = model.scene_boxes[(r - model.group_rows) * kLanes + place];
+          near &= lanes_of(near_scene_box(centers[g], all(pair.squared_reach), box));
+        } else {
+          const V3 d = minus(centers[g], centers[r * kLanes + place]);
+          near &= lanes_of(dot(d, d) <= all(pair.squared_reach));
+        }
+        if (near != 0) check_parts(scratch, pair.begin, pair.end, near, output);
+      }
     }
   }
-  return count;
+  return output.count;
 }
 
 [[gnu::always_inline]] inline int farthest_point(const float* xyz, int count, const float* n) {

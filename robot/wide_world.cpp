@@ -15,6 +15,7 @@ using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
 constexpr double kMargin = 2e-5;            ///< of the largest coordinate
+constexpr double kGroupGrowth = 1.4;        ///< of the larger ball's radius, when two parts share one
 constexpr float kRadiusRounding = 1.0e-6F;  ///< share by which a radius grows when it becomes a float
 constexpr std::size_t kAlignment = 64;      ///< bytes
 
@@ -43,6 +44,28 @@ SphereTree::Node bounding_ball(const CollisionShape& shape) {
   if (form_of(shape) == Form::other) return shape.cover().nodes[0];
   return {shape.center(), shape.radius(), 0, 0};
 }
+
+/// A ball that grows around others.
+struct Ball {
+  Vector3d center = Vector3d::Zero();
+  double radius = -1.0;  ///< m; negative: nothing yet
+
+  void add(const Ball& other) {
+    if (radius < 0.0) {
+      *this = other;
+      return;
+    }
+    const double apart = (other.center - center).norm();
+    if (apart + other.radius <= radius) return;
+    if (!(apart + radius > other.radius)) {
+      *this = other;
+      return;
+    }
+    const double joined = 0.5 * (apart + radius + other.radius);
+    if (apart > 0.0 && std::isfinite(joined)) center += (joined - radius) / apart * (other.center - center);
+    radius = joined;
+  }
+};
 
 double largest_coordinate(const CollisionPart& part, const Isometry3d& X) {
   return (X * part.X_BG * part.shape.center()).norm() + part.shape.half_extents().norm();
@@ -84,8 +107,8 @@ World::World(const CollisionWorld& world, bool fixed_root) : robot_parts_(world.
   largest_ = fixed_root ? largest : 2.0 * largest;
   margin_ = kMargin * largest_;
   add_parts(world);
-  add_pairs(world, fixed_root);
-  add_clusters();
+  add_groups();
+  add_checks(world, fixed_root);
 }
 
 /// Links joined by joints that do not move share a frame. A joint's frame has its axis as z.
@@ -164,103 +187,161 @@ int World::add_tree(const SphereTree& tree, const Isometry3d& X_FG) {
   return root;
 }
 
-/// Whether a part of the robot never meets a part of the scene, wherever its joints turn.
-bool World::out_of_reach(int part, int other) const {
-  const Part& a = parts_[static_cast<std::size_t>(part)];
-  const Part& b = parts_[static_cast<std::size_t>(other)];
-  const Reach& reach = reach_[static_cast<std::size_t>(a.frame)];
-  const OrientedBox box{Eigen::Map<const Eigen::Vector3f>(b.box_center).cast<double>(),
-                        Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(b.box_axes).cast<double>(),
-                        Eigen::Map<const Eigen::Vector3f>(b.half_extents).cast<double>()};
-  const double around = Eigen::Map<const Eigen::Vector3f>(a.ball_center).cast<double>().norm() + a.ball_radius;
+/// Successive parts of a frame share a ball unless that makes it much larger than theirs.
+void World::add_groups() {
+  for (int i = 0; i < robot_parts_; ++i) {
+    const Part& part = parts_[static_cast<std::size_t>(i)];
+    const Ball own{Eigen::Map<const Eigen::Vector3f>(part.ball_center).cast<double>(), part.ball_radius};
+    if (!groups_.empty() && groups_.back().frame == part.frame) {
+      Group& last = groups_.back();
+      Ball joined{Eigen::Map<const Eigen::Vector3f>(last.center).cast<double>(), last.radius};
+      const double larger = std::max(joined.radius, own.radius);
+      joined.add(own);
+      if (joined.radius <= kGroupGrowth * larger) {
+        store(joined.center, last.center);
+        last.radius = enlarged(joined.radius, 0.01 * margin_);  // the center is rounded
+        group_of_.push_back(group_of_.back());
+        continue;
+      }
+    }
+    group_of_.push_back(static_cast<int>(groups_.size()));
+    Group group{part.frame, {}, part.ball_radius};
+    std::copy_n(part.ball_center, 3, group.center);
+    groups_.push_back(group);
+  }
+}
+
+int World::group_rows() const { return (static_cast<int>(groups_.size()) + kLanes - 1) / kLanes; }
+
+void World::add_checks(const CollisionWorld& world, bool fixed_root) {
+  const int scene_parts = static_cast<int>(parts_.size()) - robot_parts_;
+  for (int j = 0; j < scene_parts; ++j) add_scene_box(parts_[static_cast<std::size_t>(robot_parts_ + j)]);
+  for (int row = 0; row * kLanes < scene_parts; ++row) add_scene_row(row);
+  std::vector<std::vector<PartPair>> pairs(groups_.size());
+  for (int i = 0; i < robot_parts_; ++i) {
+    const Part& part = parts_[static_cast<std::size_t>(i)];
+    for (const int j : world.partners[static_cast<std::size_t>(i)]) {
+      const Part& other = parts_[static_cast<std::size_t>(j)];
+      const float reach = part.ball_radius + other.ball_radius;
+      if (part.frame == other.frame || (fixed_root && part.frame == kRoot && other.frame == kWorld)) {
+        constant_pairs_.emplace_back(i, j);
+      } else {
+        pairs[static_cast<std::size_t>(group_of_[static_cast<std::size_t>(i)])].push_back({i, j, reach * reach});
+      }
+    }
+  }
+  for (int group = 0; group < static_cast<int>(groups_.size()); ++group) {
+    add_checks_of(group, pairs[static_cast<std::size_t>(group)], fixed_root);
+  }
+}
+
+/// pairs: of the parts of one group, each with later parts.
+void World::add_checks_of(int group, const std::vector<PartPair>& pairs, bool fixed_root) {
+  const int rows = group_rows() + static_cast<int>(scene_rows_.size());
+  const float radius = groups_[static_cast<std::size_t>(group)].radius;
+  for (int row = 0; row < rows; ++row) {
+    unsigned char wanted = 0;
+    for (int place = 0; place < kLanes; ++place) {
+      const int begin = static_cast<int>(part_pairs_.size());
+      const bool scene = row >= group_rows();
+      const int partner = (scene ? row - group_rows() : row) * kLanes + place;
+      float reach = radius;
+      for (const PartPair& pair : pairs) {
+        const bool of_scene = pair.b >= robot_parts_;
+        const int own = of_scene ? pair.b - robot_parts_ : group_of_[static_cast<std::size_t>(pair.b)];
+        if (of_scene != scene || own != partner) continue;
+        if (scene && fixed_root && out_of_reach(group, parts_[static_cast<std::size_t>(pair.b)])) continue;
+        if (!scene) reach = radius + groups_[static_cast<std::size_t>(partner)].radius;
+        part_pairs_.push_back(pair);
+      }
+      const int end = static_cast<int>(part_pairs_.size());
+      if (end > begin) wanted = static_cast<unsigned char>(wanted | 1U << place);
+      pairs_.push_back({reach * reach, begin, end});
+    }
+    wanted_.push_back(wanted);
+  }
+}
+
+/// Boxes with the root's axes around kLanes parts of the scene.
+void World::add_scene_row(int row) {
+  BoxRow boxes;
+  for (int place = 0; place < kLanes; ++place) {
+    const std::size_t index = static_cast<std::size_t>(robot_parts_ + row * kLanes + place);
+    for (int axis = 0; axis < 3; ++axis) {
+      float half = -std::numeric_limits<float>::max();  // overlaps nothing
+      if (index < parts_.size()) {
+        const Part& part = parts_[index];
+        half = 0.0F;
+        for (int k = 0; k < 3; ++k) half += std::abs(part.box_axes[3 * axis + k]) * part.half_extents[k];
+        half *= 1.0F + kRadiusRounding;
+        boxes.center[axis][place] = part.box_center[axis];
+      } else {
+        boxes.center[axis][place] = 0.0F;
+      }
+      boxes.half[axis][place] = half;
+    }
+  }
+  scene_rows_.push_back(boxes);
+}
+
+void World::add_scene_box(const Part& part) {
+  SceneBox box;
+  const auto fill = [](float* lanes, float value) { std::fill_n(lanes, kLanes, value); };
+  for (int k = 0; k < 3; ++k) {
+    fill(box.center[k], part.box_center[k]);
+    fill(box.half[k], part.half_extents[k]);
+  }
+  for (int k = 0; k < 9; ++k) fill(box.axes[k], part.box_axes[k]);
+  const Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>> axes(part.box_axes);
+  box.aligned = axes.isIdentity(0.0F);
+  scene_boxes_.push_back(box);
+}
+
+/// Whether a group of the robot never meets a part of the scene, wherever the joints turn.
+bool World::out_of_reach(int group, const Part& other) const {
+  const Group& own = groups_[static_cast<std::size_t>(group)];
+  const Reach& reach = reach_[static_cast<std::size_t>(own.frame)];
+  const OrientedBox box{Eigen::Map<const Eigen::Vector3f>(other.box_center).cast<double>(),
+                        Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(other.box_axes).cast<double>(),
+                        Eigen::Map<const Eigen::Vector3f>(other.half_extents).cast<double>()};
+  const double around = Eigen::Map<const Eigen::Vector3f>(own.center).cast<double>().norm() + own.radius;
   return point_box_distance(reach.center, box) > reach.radius + around + margin_;
 }
 
-void World::add_pairs(const CollisionWorld& world, bool fixed_root) {
-  for (int i = 0; i < robot_parts_; ++i) {
-    const int frame = parts_[static_cast<std::size_t>(i)].frame;
-    const int begin = static_cast<int>(partners_.size());
-    for (const int j : world.partners[static_cast<std::size_t>(i)]) {
-      const int other = parts_[static_cast<std::size_t>(j)].frame;
-      if (frame == other || (fixed_root && frame == kRoot && other == kWorld)) {
-        constant_pairs_.emplace_back(i, j);
-      } else if (!fixed_root || other != kWorld || !out_of_reach(i, j)) {
-        partners_.push_back(j);
-      }
-    }
-    ranges_.push_back({begin, static_cast<int>(partners_.size())});
-  }
-}
-
-/// What hangs on the first branching of each chain: a hand, whose many parts are far from most others together.
-void World::add_clusters() {
-  const int count = static_cast<int>(frames_.size());
-  std::vector<int> children(frames_.size(), 0);
-  for (int f = kRoot + 1; f < count; ++f)
-    ++children[static_cast<std::size_t>(frames_[static_cast<std::size_t>(f)].parent)];
-  std::vector<int> cluster_of(frames_.size(), -1);
-  std::vector<double> reach(frames_.size(), 0.0);  // of the frame's origin from the cluster's
-  for (int f = kRoot + 1; f < count; ++f) {
-    const auto index = static_cast<std::size_t>(f);
-    const Frame& frame = frames_[index];
-    const auto parent = static_cast<std::size_t>(frame.parent);
-    if (cluster_of[parent] >= 0) {
-      cluster_of[index] = cluster_of[parent];
-      const double step = Eigen::Map<const Eigen::Vector3f>(frame.translation).norm();
-      reach[index] = reach[parent] + (frame.motion == Motion::slide ? std::numeric_limits<double>::infinity() : step);
-    } else if (children[index] > 1) {
-      cluster_of[index] = f;
-    }
-  }
-  for (int f = kRoot + 1; f < count; ++f) {
-    if (cluster_of[static_cast<std::size_t>(f)] != f) continue;
-    Cluster cluster{f, {0, 0, 0}, 0.0F, robot_parts_, 0};
-    double radius = 0.0;
-    int members = 0;
-    for (int i = 0; i < robot_parts_; ++i) {
-      const Part& part = parts_[static_cast<std::size_t>(i)];
-      if (cluster_of[static_cast<std::size_t>(part.frame)] != f) continue;
-      const double around = Eigen::Map<const Eigen::Vector3f>(part.ball_center).norm() + part.ball_radius;
-      radius = std::max(radius, reach[static_cast<std::size_t>(part.frame)] + around);
-      cluster.begin = std::min(cluster.begin, i);
-      cluster.end = i + 1;
-      ++members;
-    }
-    cluster.radius = enlarged(radius, margin_);
-    // Links may be listed in another order than branch by branch; then there is no range of parts.
-    if (members == cluster.end - cluster.begin && members > 0 && std::isfinite(radius)) clusters_.push_back(cluster);
-  }
-}
-
 Model World::model() const {
-  return {frames_.data(),
-          static_cast<int>(frames_.size()),
-          parts_.data(),
-          robot_parts_,
-          static_cast<int>(parts_.size()),
-          nodes_.data(),
-          ranges_.data(),
-          partners_.data(),
-          clusters_.data(),
-          static_cast<int>(clusters_.size())};
+  const auto size = [](const auto& list) { return static_cast<int>(list.size()); };
+  Model model;
+  model.frames = frames_.data();
+  model.frame_count = size(frames_);
+  model.parts = parts_.data();
+  model.robot_part_count = robot_parts_;
+  model.part_count = size(parts_);
+  model.nodes = nodes_.data();
+  model.groups = groups_.data();
+  model.group_count = size(groups_);
+  model.group_rows = group_rows();
+  model.scene_boxes = scene_boxes_.data();
+  model.scene_rows = scene_rows_.data();
+  model.scene_row_count = size(scene_rows_);
+  model.wanted = wanted_.data();
+  model.pairs = pairs_.data();
+  model.part_pairs = part_pairs_.data();
+  return model;
 }
 
-void World::sweep(const Query& query, std::vector<Unknown>& found, bool portable) const {
-  thread_local std::vector<float> memory;
+int World::sweep(const Query& query, Buffers& buffers, bool portable) const {
   const Model arrays = model();
-  memory.resize(static_cast<std::size_t>(workspace_size(arrays)) + kAlignment / sizeof(float));
-  const auto address = reinterpret_cast<std::uintptr_t>(memory.data());
-  float* const workspace = memory.data() + (kAlignment - address % kAlignment) % kAlignment / sizeof(float);
-  static const bool fast = has_avx2();
-  found.resize(partners_.size());
+  const std::size_t size = static_cast<std::size_t>(workspace_size(arrays)) + kAlignment / sizeof(float);
+  if (buffers.memory.size() < size) buffers.memory.resize(size);
+  if (buffers.found.size() < part_pairs_.size()) buffers.found.resize(part_pairs_.size());
+  const auto address = reinterpret_cast<std::uintptr_t>(buffers.memory.data());
+  float* const workspace = buffers.memory.data() + (kAlignment - address % kAlignment) % kAlignment / sizeof(float);
 #if defined(OPPONENS_AVX2)
-  const int count = fast && !portable ? sweep_avx2(arrays, query, workspace, found.data())
-                                      : wide::sweep(arrays, query, workspace, found.data());
-#else
-  (void)portable;
-  const int count = wide::sweep(arrays, query, workspace, found.data());
+  static const bool fast = has_avx2();
+  if (fast && !portable) return sweep_avx2(arrays, query, workspace, buffers.found.data());
 #endif
-  found.resize(static_cast<std::size_t>(count));
+  (void)portable;
+  return wide::sweep(arrays, query, workspace, buffers.found.data());
 }
 
 }  // namespace opponens::robot::wide

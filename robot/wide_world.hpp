@@ -36,8 +36,13 @@ class World {
   /// Whether the sweep's precision holds with the robot's root there.
   bool reaches(const Eigen::Isometry3d& X_SR) const { return X_SR.translation().norm() <= 0.5 * largest_; }
 
-  /// Writes to `found` every pair that may touch. X_SR: the robot's root in its usual place (identity there).
-  void sweep(const Query& query, std::vector<Unknown>& found, bool portable) const;
+  /// Memory for sweeps, to be used again and again.
+  struct Buffers {
+    std::vector<float> memory;
+    std::vector<Unknown> found;
+  };
+  /// Writes every pair that may touch to the beginning of buffers.found and returns how many there are.
+  int sweep(const Query& query, Buffers& buffers, bool portable) const;
 
   /// m, by which every ball and box is enlarged: at least twice the errors of the sweep's arithmetic. 2e-5 times the
   /// largest coordinate, of which rounding of angles (2e-7 rad for each joint of a chain, times its reach), of sines
@@ -49,10 +54,14 @@ class World {
  private:
   void add_frames(const RobotModel& robot);
   void add_parts(const CollisionWorld& world);
-  void add_pairs(const CollisionWorld& world, bool fixed_root);
-  void add_clusters();
   int add_tree(const SphereTree& tree, const Eigen::Isometry3d& X_FG);
-  bool out_of_reach(int part, int other) const;
+  void add_groups();
+  void add_checks(const CollisionWorld& world, bool fixed_root);
+  void add_checks_of(int group, const std::vector<PartPair>& pairs, bool fixed_root);
+  void add_scene_row(int row);
+  int group_rows() const;
+  void add_scene_box(const Part& part);
+  bool out_of_reach(int group, const Part& other) const;
 
   /// Where a frame's origin can be: within radius of a point of a frame that does not move.
   struct Reach {
@@ -67,9 +76,13 @@ class World {
   std::vector<Eigen::Isometry3d> X_FL_;  ///< [links]
   std::vector<Part> parts_;
   std::vector<Node> nodes_;
-  std::vector<Range> ranges_;
-  std::vector<int> partners_;
-  std::vector<Cluster> clusters_;
+  std::vector<Group> groups_;
+  std::vector<int> group_of_;  ///< [robot parts]
+  std::vector<SceneBox> scene_boxes_;
+  std::vector<BoxRow> scene_rows_;
+  std::vector<unsigned char> wanted_;
+  std::vector<GroupPair> pairs_;
+  std::vector<PartPair> part_pairs_;
   std::vector<std::pair<int, int>> constant_pairs_;
   int robot_parts_ = 0;
   double largest_ = 0.0;  ///< m
