@@ -174,7 +174,7 @@ Json check_request(const fs::path& file, const robot::RobotModel& robot, const P
   const robot::Completed start = complete(robot, request.start, complete(robot, of_scene, neutral(robot)).q);
   const Verdict start_verdict = verdict_of(robot, at.checker, start.q);
   std::set<std::string> unknown(start.unknown.begin(), start.unknown.end());
-  console.say(file.filename().string() + "  start  " + verdict_text(start_verdict));
+  console.say(file.string() + "  start  " + verdict_text(start_verdict));
   Json goals = Json::array();
   for (const robot::JointState& goal : request.goals) {
     const robot::Completed completed = complete(robot, goal, start.q);
@@ -183,7 +183,7 @@ Json check_request(const fs::path& file, const robot::RobotModel& robot, const P
     ++tally.goals;
     tally.goals_free += verdict.free ? 1 : 0;
     goals.push_back(verdict_json(verdict));
-    console.say(file.filename().string() + "  goal   " + verdict_text(verdict));
+    console.say(file.string() + "  goal   " + verdict_text(verdict));
   }
   ++tally.requests;
   tally.start_free += start_verdict.free ? 1 : 0;

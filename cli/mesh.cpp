@@ -62,12 +62,13 @@ Json report_json(const MeshReport& report) {
 
 void say_report(const std::string& name, const MeshReport& report, const Console& console) {
   console.say(name + ": " + std::to_string(report.triangles) + " triangles, " + std::to_string(report.vertices) +
-              " vertices" + (report.soup ? " (each triangle has its own: a soup, merged on loading)" : "") + ", " +
-              text("%.4g", report.extent.x()) + " x " + text("%.4g", report.extent.y()) + " x " +
+              " vertices, " + text("%.4g", report.extent.x()) + " x " + text("%.4g", report.extent.y()) + " x " +
               text("%.4g", report.extent.z()) + " m, " + std::to_string(report.components) +
               (report.components == 1 ? " part" : " parts") + ", " +
               (report.closed() ? "closed" : std::to_string(report.open_components) + " of them not closed") +
-              (report.cavities > 0 ? ", " + std::to_string(report.cavities) + " cavities" : ""));
+              (report.cavities > 0
+                   ? ", " + std::to_string(report.cavities) + (report.cavities == 1 ? " cavity" : " cavities")
+                   : ""));
   const std::vector<std::string> found = robot::defects(report);
   for (const std::string& defect : found) console.say("  " + defect);
   if (found.empty()) console.say("  no defect");

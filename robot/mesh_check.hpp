@@ -24,8 +24,8 @@ struct MeshReport {
   int vertices = 0;                       ///< that differ
   int triangles = 0;                      ///< as written
   Eigen::Vector3d extent;                 ///< m, of the bounding box
-  int repeated_vertices = 0;              ///< of the file: equal to an earlier one
-  bool soup = false;                      ///< of the file: no two of several triangles share a vertex
+  int repeated_vertices = 0;              ///< as read: equal to an earlier one (of STL and OBJ always: one per corner)
+  bool soup = false;                      ///< as read: no two of several triangles share a vertex
   int close_vertices = 0;                 ///< nearer to another than 1e-6 of the box's diagonal: a crack
   int degenerate_triangles = 0;           ///< without area: a corner twice, or a height below 1e-9 of the diagonal
   int duplicate_triangles = 0;            ///< of the same three vertices as an earlier one, either way round

@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/mesh_repair.hpp"
 
+#include <algorithm>
 #include <array>
-#include <functional>
-#include <set>
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/border.h>
@@ -113,41 +112,42 @@ class Changes {
   std::vector<std::string> list_;
 };
 
-/// Equal and close vertices become one; triangles twice or without area go.
-TriangleMesh cleaned(const TriangleMesh& written, Changes& changes) {
+Corners corners_of(const TriangleMesh& mesh, Eigen::Index triangle) {
+  Corners corners{};
+  for (int k = 0; k < 3; ++k)
+    corners[static_cast<std::size_t>(k)] = static_cast<std::size_t>(mesh.triangles(k, triangle));
+  return corners;
+}
+
+/// Keeps the triangles that are marked.
+void keep(TriangleMesh& mesh, const std::vector<bool>& kept) {
+  Eigen::Index count = 0;
+  for (Eigen::Index f = 0; f < mesh.triangles.cols(); ++f) {
+    if (kept[static_cast<std::size_t>(f)]) mesh.triangles.col(count++) = mesh.triangles.col(f).eval();
+  }
+  mesh.triangles.conservativeResize(3, count);
+}
+
+/// Equal and close vertices become one; triangles without area go.
+TriangleMesh joined(const TriangleMesh& written, Changes& changes) {
   TriangleMesh mesh = merge_equal_vertices(written);
   changes.add(static_cast<std::size_t>(written.vertices.cols() - mesh.vertices.cols()), "equal vertices merged");
-  std::size_t flat = static_cast<std::size_t>(written.triangles.cols() - mesh.triangles.cols());
-  if (mesh.triangles.cols() == 0) return mesh;
+  auto flat = static_cast<std::size_t>(written.triangles.cols() - mesh.triangles.cols());
   const double diagonal = (mesh.vertices.rowwise().maxCoeff() - mesh.vertices.rowwise().minCoeff()).norm();
+  if (diagonal == 0.0) return mesh;
   const std::vector<int> first = first_close_vertex(mesh, kCloseVertices * diagonal);
   std::size_t close = 0;
   for (std::size_t v = 0; v < first.size(); ++v) close += first[v] != static_cast<int>(v) ? 1 : 0;
   changes.add(close, "close vertices merged");
   const Soup soup = soup_of(mesh);
-  std::set<Corners> seen;
-  std::size_t twice = 0;
-  Eigen::Index kept = 0;
+  std::vector<bool> kept;
   for (Eigen::Index f = 0; f < mesh.triangles.cols(); ++f) {
-    Corners corners{};
-    for (int k = 0; k < 3; ++k) {
-      const int v = first[static_cast<std::size_t>(mesh.triangles(k, f))];
-      mesh.triangles(k, kept) = v;
-      corners[static_cast<std::size_t>(k)] = static_cast<std::size_t>(v);
-    }
-    std::sort(corners.begin(), corners.end());
-    const bool repeats = corners[0] == corners[1] || corners[1] == corners[2];
-    if (repeats || !has_area(soup, corners)) {
-      ++flat;
-    } else if (!seen.insert(corners).second) {
-      ++twice;
-    } else {
-      ++kept;
-    }
+    for (int k = 0; k < 3; ++k) mesh.triangles(k, f) = first[static_cast<std::size_t>(mesh.triangles(k, f))];
+    kept.push_back(has_area(soup, corners_of(mesh, f)));
+    flat += kept.back() ? 0 : 1;
   }
-  mesh.triangles.conservativeResize(3, kept);
+  keep(mesh, kept);
   changes.add(flat, "triangles without area dropped");
-  changes.add(twice, "repeated triangles dropped");
   return mesh;
 }
 
@@ -220,7 +220,11 @@ int count_self_intersections(const TriangleMesh& mesh) {
 Result<RepairedMesh> repair_mesh(const TriangleMesh& written) {
   require(written.triangles.cols() > 0, "repair_mesh: a mesh without triangles");
   Changes changes;
-  TriangleMesh mesh = cleaned(written, changes);
+  TriangleMesh mesh = joined(written, changes);
+  const RepeatedTriangles repeated = repeated_triangles(mesh);
+  keep(mesh, repeated.kept);
+  changes.add(static_cast<std::size_t>(repeated.fins), "double sheets without volume dropped");
+  changes.add(static_cast<std::size_t>(repeated.dropped), "repeated triangles dropped");
   if (mesh.triangles.cols() == 0) return failure(FailureCode::degenerate, "no triangle of the mesh has an area");
   agree_with_neighbours(mesh, changes);
   Surface surface;

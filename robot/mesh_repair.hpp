@@ -24,10 +24,10 @@ struct RepairedMesh {
 };
 
 /// Makes an oriented manifold surface of a mesh as written, and closes its holes: vertices that are equal or close are
-/// merged, triangles twice or without area dropped, triangles turned to agree with their neighbours, non-manifold
-/// places cut open, borders that coincide joined, holes filled by triangles (CGAL's least area), parts inside out
-/// turned. Self-intersections stay. Shapes with a wide opening (a mug without its inside) get a lid: look at what
-/// surface_change says. Failure when nothing is left of the mesh.
+/// merged, triangles without area and double sheets dropped, of triangles twice one kept, triangles turned to agree
+/// with their neighbours, non-manifold places cut open, borders that coincide joined, holes filled by triangles (CGAL's
+/// least area), parts inside out turned. Self-intersections stay. Shapes with a wide opening (a mug without its inside)
+/// get a lid: look at what surface_change says. Failure when nothing is left of the mesh.
 Result<RepairedMesh> repair_mesh(const TriangleMesh& written);
 
 /// A mesh of about that many triangles, by edge collapses that keep volume and boundary (Lindstrom and Turk 1998,

@@ -31,6 +31,15 @@ bool runs_forward(const TriangleMesh& mesh, int triangle, const MeshEdge& edge) 
   return false;
 }
 
+using Corners = std::array<int, 3>;
+
+/// A triangle's vertices from the lowest on, in its order.
+Corners corners_from_lowest(const TriangleMesh& mesh, Eigen::Index triangle) {
+  Corners corners{mesh.triangles(0, triangle), mesh.triangles(1, triangle), mesh.triangles(2, triangle)};
+  std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+  return corners;
+}
+
 /// Marks the triangles against the majority of one patch.
 void mark_minority(const TriangleMesh& mesh, const std::vector<int>& patch, const std::vector<int>& side,
                    PatchOrientation& result) {
@@ -162,6 +171,32 @@ std::vector<int> first_close_vertex(const TriangleMesh& mesh, double tolerance) 
     if (found == static_cast<int>(v)) grid[at].push_back(found);  // only these can be the first of others
   }
   return first;
+}
+
+RepeatedTriangles repeated_triangles(const TriangleMesh& mesh) {
+  constexpr double kFinShare = 1e-3;
+  std::map<Corners, std::vector<Eigen::Index>> same;
+  double area = 0.0;
+  for (Eigen::Index f = 0; f < mesh.triangles.cols(); ++f) {
+    Corners corners = corners_from_lowest(mesh, f);
+    std::sort(corners.begin(), corners.end());
+    same[corners].push_back(f);
+    area += area_of(mesh, f);
+  }
+  const auto is_fin = [&mesh](const std::vector<Eigen::Index>& group) {
+    return group.size() == 2 && corners_from_lowest(mesh, group[0]) != corners_from_lowest(mesh, group[1]);
+  };
+  double fin_area = 0.0;
+  for (const auto& [corners, group] : same) fin_area += is_fin(group) ? 2.0 * area_of(mesh, group[0]) : 0.0;
+  RepeatedTriangles result;
+  result.kept.assign(static_cast<std::size_t>(mesh.triangles.cols()), true);
+  for (const auto& [corners, group] : same) {
+    const bool fin = fin_area < kFinShare * area && is_fin(group);
+    for (std::size_t i = fin ? 0 : 1; i < group.size(); ++i) result.kept[static_cast<std::size_t>(group[i])] = false;
+    result.fins += fin ? 1 : 0;
+    result.dropped += fin ? 0 : static_cast<int>(group.size()) - 1;
+  }
+  return result;
 }
 
 std::vector<ComponentKind> component_kinds(const TriangleMesh& mesh) {

@@ -36,6 +36,16 @@ int nonmanifold_vertices(const TriangleMesh& mesh);
 /// For every vertex the first one (in order) that lies nearer than the tolerance (m), itself if none.
 std::vector<int> first_close_vertex(const TriangleMesh& mesh, double tolerance);
 
+/// Triangles of the same vertices as another: one of them stays. Two that run opposite ways are a fin, a double sheet
+/// without volume; both go when all fins together are less than a thousandth of the surface (else it is a surface of
+/// sheets, of which one side has to stay).
+struct RepeatedTriangles {
+  std::vector<bool> kept;  ///< [F]
+  int fins = 0;            ///< pairs of which none stays
+  int dropped = 0;         ///< the others that go
+};
+RepeatedTriangles repeated_triangles(const TriangleMesh& mesh);
+
 /// What a component of a mesh is, in the order of component_seeds.
 enum class ComponentKind {
   open,        ///< has a boundary, or its triangles are not oriented alike

@@ -184,6 +184,33 @@ TEST(MeshCheck, DuplicatesAndDegenerateTriangles) {
   EXPECT_EQ(repaired.mesh.triangles.cols(), 12);
 }
 
+TEST(MeshCheck, AFinIsDroppedAndASheetIsNot) {
+  TriangleMesh mesh = ball();
+  const Eigen::Index v = mesh.vertices.cols();
+  mesh.vertices.conservativeResize(3, v + 1);
+  const int a = mesh.triangles(0, 700);
+  const int b = mesh.triangles(1, 700);
+  mesh.vertices.col(v) = 1.01 * mesh.vertices.col(a);
+  const Eigen::Index f = mesh.triangles.cols();
+  mesh.triangles.conservativeResize(3, f + 2);
+  mesh.triangles.col(f) << a, b, static_cast<int>(v);
+  mesh.triangles.col(f + 1) << b, a, static_cast<int>(v);
+  EXPECT_EQ(check_mesh(mesh).duplicate_triangles, 1);
+  EXPECT_EQ(check_mesh(mesh).nonmanifold_edges, 1);
+  const RepairedMesh repaired = must_repair(mesh);
+  EXPECT_EQ(repaired.changes, std::vector<std::string>{"1 double sheets without volume dropped"});
+  EXPECT_EQ(repaired.mesh.triangles.cols(), ball().triangles.cols());
+  // A plate drawn from both sides is all double sheet: something of it has to stay.
+  TriangleMesh plate;
+  plate.vertices.resize(3, 4);
+  plate.vertices << 0, 1, 1, 0, 0, 0, 1, 1, 0, 0, 0, 0;
+  plate.triangles.resize(3, 4);
+  plate.triangles << 0, 0, 2, 3, 1, 2, 1, 2, 2, 3, 0, 0;
+  const Result<RepairedMesh> sheet = repair_mesh(plate);
+  ASSERT_TRUE(sheet.has_value());
+  EXPECT_GE(sheet->mesh.triangles.cols(), 2);
+}
+
 TEST(MeshCheck, ACrackIsClosed) {
   TriangleMesh mesh = cube();
   // One corner of two triangles lies 10 nm beside: not equal, so the surface is torn.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <numbers>
@@ -404,6 +405,34 @@ TEST(MotionBenchMaker, EverySceneAndRequestLoads) {
   }
   EXPECT_EQ(requests, 60);
   EXPECT_EQ(scenes, 67);  // 60 problems and 7 nominal scenes
+}
+
+/// The query of the table problems puts the tool 0.2 m in front of the can and 25 mm above its middle. That holds for
+/// the base that docs/scene_files.md names, and ties arm, object poses, shape poses and base together.
+TEST(MotionBenchMaker, GoalsPutTheToolBeforeTheCan) {
+  const fs::path shared = OPPONENS_SHARED_DATA;
+  if (!fs::exists(shared / "data/scenes")) GTEST_SKIP() << "needs " << shared;
+  ASSERT_EQ(setenv("OPPONENS_ROBOT_DATA", (shared / "data/robots").c_str(), 1), 0);
+  const RobotModel robot(load_robot(fs::path(OPPONENS_SOURCE_DIR) / "experiments/motion_bench_maker/ur5.yaml"));
+  EXPECT_EQ(robot.dof(), 6);
+  EXPECT_TRUE(robot.description().hand_joints.empty());
+  Eigen::Isometry3d X_WR = Eigen::Isometry3d::Identity();
+  X_WR.linear() = Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  X_WR.translation().z() = 0.9144;
+  const auto tool = static_cast<std::size_t>(robot.link_index("tool0"));
+  for (int i = 1; i <= 20; ++i) {
+    const std::string number = (i < 10 ? "000" : "00") + std::to_string(i) + ".yaml";
+    const fs::path folder = shared / "data/scenes/ur5_problems/table_pick_ur5";
+    const Scene scene = load_scene(folder / ("scene" + number));
+    const MotionRequest request = load_motion_request(folder / ("request" + number));
+    const Completed goal = complete(robot, request.goals[0], Eigen::VectorXd::Zero(6));
+    const Eigen::Isometry3d X_WT = X_WR * robot.link_poses(goal.q)[tool];
+    const SceneBody& can = scene.body("Can1");
+    const Eigen::Vector3d p_TC = X_WT.inverse() * (can.X_WB * can.geometry[0].X_BG.translation());
+    EXPECT_NEAR(p_TC.z(), 0.2, 0.01) << number;
+    EXPECT_NEAR((X_WT.linear() * p_TC).z(), -0.025, 0.005) << number;
+    EXPECT_NEAR(p_TC.head<2>().norm(), 0.025, 0.005) << number;
+  }
 }
 
 }  // namespace
