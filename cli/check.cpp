@@ -105,11 +105,8 @@ std::vector<std::size_t> columns_of(const storage::CsvReader& table, const robot
 std::vector<std::string> surplus_columns(const storage::CsvReader& table, const robot::RobotModel& robot) {
   const std::set<std::string> joints(robot.joint_names().begin(), robot.joint_names().end());
   std::vector<std::string> surplus;
-  std::set<std::string> seen;
   for (const std::string_view cell : table.header()) {
     const std::string name(cell);
-    if (!seen.insert(name).second)
-      throw InputError("column '" + name + "' occurs twice in the table of configurations");
     if (joints.count(name) == 0) surplus.push_back(name);
   }
   return surplus;

@@ -9,7 +9,7 @@ namespace opponens::robot {
 
 namespace {
 
-constexpr double kSpacing = 1.0 / 300.0;  ///< of the samples, of the diagonal of the surface before
+constexpr double kSpacing = 1.0 / 200.0;  ///< of the samples, of the diagonal of the surface before
 
 using Mesh = std::shared_ptr<const TriangleMesh>;
 
