@@ -175,6 +175,29 @@ void declare_plan(CLI::App& app, PlanOptions& options) {
       ->capture_default_str();
 }
 
+void declare_check(CLI::App& app, CheckOptions& options) {
+  app.add_option("--robot", options.robot, "robot.yaml; an arm without a hand is enough")->capture_default_str();
+  app.add_option("--scene", options.scene,
+                 "Scene (docs/scene_files.md); default with --requests: the file beside each, scene... for request...");
+  app.add_option("--configs", options.configs, "CSV with one configuration a line; its header names the joints");
+  app.add_option("--requests", options.requests, "MoveIt or MotionBenchMaker motion plan requests");
+  app.add_option(
+         "--base", options.base,
+         "Pose of the robot's root in the scene, x,y,z or x,y,z,roll,pitch,yaw (m, rad); default: the scene's own")
+      ->delimiter(',');
+}
+
+void declare_mesh(CLI::App& app, MeshOptions& options) {
+  app.add_option("FILE", options.files, "STL, OBJ or DAE")->required();
+  app.add_option("--unit", options.unit, "Of the numbers in the files")
+      ->check(CLI::IsMember({"m", "cm", "mm", "in"}))
+      ->capture_default_str();
+  app.add_flag("--intersections", options.intersections, "Count pairs of triangles that cross as well");
+  app.add_option("--repair", options.repair, "STL to write, in metres: the one FILE repaired");
+  app.add_option("--simplify", options.simplify, "Triangles that the repaired mesh shall have")
+      ->check(CLI::Range(4, 100000000));
+}
+
 void declare_show(CLI::App& app, ShowOptions& options) {
   app.add_option("ID", options.id, "Object id, or the beginning of one");
   add_store(app, options.common);
@@ -227,6 +250,9 @@ void add_commands(Builder& add) {
                               declare_compare);
   add.command<GraspOptions>("grasp", "Search force-closure grasps along the synergies", grasp, declare_grasp);
   add.command<PlanOptions>("plan", "Plan a hand-arm path to one of the grasps", plan, declare_plan);
+  add.command<CheckOptions>("check", "Collision verdict, clearance and colliding pairs of given configurations", check,
+                            declare_check);
+  add.command<MeshOptions>("mesh", "Say what is wrong with triangle meshes; repair one", mesh, declare_mesh);
   add.command<VerifyOptions>("verify", "Check grasps and paths again by code of its own, all else by hash", verify,
                              [](CLI::App& app, VerifyOptions& options) { add_store(app, options.common); });
   add.command<ReportOptions>(

@@ -116,6 +116,20 @@ struct StaleOptions {
   Common common{};
   std::vector<std::filesystem::path> files{};  ///< folders with outside files
 };
+struct CheckOptions {
+  std::string robot = "models/ur5_allegro/ur5_allegro_right.yaml";
+  std::string scene{};                            ///< empty: the file beside each request
+  std::vector<double> base{};                     ///< x, y, z m (and roll, pitch, yaw rad); empty: the scene's own
+  std::filesystem::path configs{};                ///< CSV
+  std::vector<std::filesystem::path> requests{};  ///< MoveIt motion plan requests
+};
+struct MeshOptions {
+  std::vector<std::string> files{};
+  std::string unit = "m";
+  bool intersections = false;
+  std::filesystem::path repair{};  ///< STL to write; empty: only check
+  int simplify = 0;                ///< triangles wanted; 0: all
+};
 struct DemoOptions {
   std::filesystem::path out = "demo";
   std::uint64_t seed = 1;
@@ -139,6 +153,8 @@ int export_objects(const ExportOptions& options, const Console& console);
 int merge(const MergeOptions& options, const Console& console);
 int repair(const RepairOptions& options, const Console& console);
 int stale(const StaleOptions& options, const Console& console);
+int check(const CheckOptions& options, const Console& console);
+int mesh(const MeshOptions& options, const Console& console);
 int demo(const DemoOptions& options, const Console& console);
 
 }  // namespace opponens::cli

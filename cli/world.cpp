@@ -8,6 +8,7 @@
 #include "cli/stored.hpp"
 #include "core/require.hpp"
 #include "robot/load_robot.hpp"
+#include "robot/mesh_check.hpp"
 
 namespace opponens::cli {
 
@@ -24,6 +25,7 @@ NamedWorld load_world(const std::string& robot_file, const std::string& scene_fi
   const auto robot_path = find_file(robot_file);
   const auto scene_path = find_file(scene_file);
   robot::RobotDescription description = robot::load_robot(robot_path);
+  if (description.hand_joints.empty()) throw InputError(robot_file + ": is an arm without a hand: nothing can grasp");
   robot::RobotDescription hand = robot::hand_of(description);
   robot::Scene scene = robot::load_scene(scene_path);
   const std::string name = object.empty() ? scene.object : object;
@@ -59,12 +61,20 @@ std::vector<robot::BodyPair> NamedWorld::hand_object_pairs() const {
   return pairs;
 }
 
-std::vector<std::string> warnings_of(const NamedWorld& world, const robot::CollisionChecker& checker) {
-  std::vector<std::string> warnings = world.robot.description().notes;
+std::vector<std::string> warnings_of(const robot::RobotModel& robot, const robot::Scene& scene,
+                                     const robot::CollisionChecker& checker) {
+  std::vector<std::string> warnings = robot.description().notes;
+  warnings.insert(warnings.end(), scene.notes.begin(), scene.notes.end());
+  const std::vector<std::string> meshes = robot::mesh_warnings(scene);
+  warnings.insert(warnings.end(), meshes.begin(), meshes.end());
   for (const auto& name : checker.open_meshes()) {
     warnings.push_back(name + ": its mesh is open, so it is a surface: nothing is seen to lie inside it");
   }
   return warnings;
+}
+
+std::vector<std::string> warnings_of(const NamedWorld& world, const robot::CollisionChecker& checker) {
+  return warnings_of(world.robot, world.scene, checker);
 }
 
 void require_same_joints(const SynergySet& synergies, const robot::RobotModel& hand) {

@@ -220,6 +220,32 @@ void add_mesh_files(RobotDescription& description) {
   for (const Link& link : description.links) append_mesh_files(link.collision, description.files);
 }
 
+void name_arm(const YamlValue& file, const YamlValue& arm, RobotDescription& description) {
+  if (const auto name = file.find("name")) description.name = name->text();
+  for (const NamedValue& joint : read_names(arm.at("joints"))) {
+    require_actuated(description, joint);
+    description.arm_joints.push_back(joint.name);
+  }
+  if (description.arm_joints.empty()) arm.at("joints").fail("names no joint");
+}
+
+/// A robot.yaml without the key hand.
+RobotDescription load_arm(const std::filesystem::path& robot_yaml, const YamlValue& file, const YamlValue& arm) {
+  if (const auto mount = file.find("mount")) mount->fail("mounts a hand, but there is no key 'hand'");
+  UrdfSettings settings{read_packages(arm), read_link_geometry(file), {}};
+  const std::vector<NamedValue> without_geometry = read_without_geometry(file, settings);
+  const std::filesystem::path urdf = arm.at("urdf").path();
+  RobotDescription description = read_urdf(urdf, settings);
+  require_links(without_geometry, description, description);
+  name_arm(file, arm, description);
+  allow_adjacent(description);
+  allow_pairs(description, read_pairs(file));
+  description.weights = read_weights(file, description);
+  description.files = {robot_yaml, urdf};
+  add_mesh_files(description);
+  return description;
+}
+
 bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
   std::error_code error;
   return std::filesystem::equivalent(a, b, error);
@@ -269,6 +295,7 @@ RobotDescription load_robot(const std::filesystem::path& robot_yaml) {
   file.allow_keys({"name", "arm", "hand", "mount", "collision", "without_geometry", "weights", "allowed_collisions"});
   const YamlValue arm = file.at("arm");
   arm.allow_keys({"urdf", "packages", "joints"});
+  if (!file.has("hand")) return load_arm(robot_yaml, file, arm);
   RobotFile robot{file, arm, read_hand_file(file.at("hand").path()), {}, {}};
   robot.settings = {read_packages(arm), read_link_geometry(file), robot.hand.urdf_settings.without_geometry};
   robot.without_geometry = read_without_geometry(file, robot.settings);
@@ -280,12 +307,7 @@ RobotDescription load_robot(const std::filesystem::path& robot_yaml) {
     file.fail("needs a key 'mount', since arm.urdf and the hand's urdf are two files");
   }
   RobotDescription description = mount ? load_mounted(robot, urdf, *mount) : load_joined(robot, urdf);
-  if (const auto name = file.find("name")) description.name = name->text();
-  for (const NamedValue& joint : read_names(arm.at("joints"))) {
-    require_actuated(description, joint);
-    description.arm_joints.push_back(joint.name);
-  }
-  if (description.arm_joints.empty()) arm.at("joints").fail("names no joint");
+  name_arm(file, arm, description);
   fill_hand(description, robot.hand);
   for (const NamedValue& joint : robot.hand.joints) {
     const auto& names = description.arm_joints;
