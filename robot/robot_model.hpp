@@ -78,6 +78,12 @@ RobotDescription scaled(const RobotDescription& description, double factor);
 /// is ordered by name as given in the description, never by position in the URDF.
 class RobotModel {
  public:
+  struct Drive {     ///< how a joint's position follows from q
+    int index = -1;  ///< into q; -1: constant offset (fixed, or not actuated)
+    double multiplier = 1.0;
+    double offset = 0.0;
+  };
+
   /// Throws std::invalid_argument when the description is inconsistent (order, names, sizes), InputError when no
   /// position of a joint keeps those that mimic it inside their limits.
   explicit RobotModel(RobotDescription description);
@@ -95,6 +101,7 @@ class RobotModel {
   const Eigen::VectorXd& weights() const { return description_.weights; }  ///< [d]
   int link_index(const std::string& name) const;                           ///< throws std::invalid_argument when absent
   int palm() const { return palm_; }
+  const std::vector<Drive>& drives() const { return drives_; }  ///< [joints of the description]
 
   /// Poses X_RL of every link in the root frame R. Cost: one product per link. q: [d] rad.
   std::vector<Eigen::Isometry3d> link_poses(const Eigen::Ref<const Eigen::VectorXd>& q) const;
@@ -110,12 +117,6 @@ class RobotModel {
   bool within_limits(const Eigen::Ref<const Eigen::VectorXd>& q, double tolerance = 1e-9) const;
 
  private:
-  struct Drive {     ///< how a joint's position follows from q
-    int index = -1;  ///< into q; -1: constant offset (fixed, or not actuated)
-    double multiplier = 1.0;
-    double offset = 0.0;
-  };
-
   /// Rotation of a revolute joint about its axis, parent to child: fixed + sin(q) odd + (1 - cos(q)) even (Rodrigues).
   struct Turn {
     Eigen::Matrix3d fixed;
