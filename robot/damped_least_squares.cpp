@@ -153,7 +153,8 @@ Descent descend(const KinematicChain& chain, const TipGoal& goal, const Eigen::R
       descent.q = next;
       at = there;
     } else {
-      if (step.cwiseAbs().maxCoeff() < kStill) break;
+      descent.stationary = step.cwiseAbs().maxCoeff() < kStill;
+      if (descent.stationary) break;
       damping *= growth;
       growth *= 2.0;
     }

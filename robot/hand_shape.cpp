@@ -57,7 +57,7 @@ Result<HandShape> shape_hand(const RobotModel& hand, const std::vector<TipPositi
   Rng rng = stream(settings.seed, "hand shape");
   HandShape best{start, Eigen::VectorXd::Constant(1, std::numeric_limits<double>::infinity())};
   bool all_converged = true;
-  for (int i = 0; i <= settings.restarts && !(best.miss.maxCoeff() <= settings.tolerance); ++i) {
+  for (int i = 0; i == 0 || (i <= settings.restarts && best.miss.maxCoeff() > settings.tolerance); ++i) {
     Eigen::MatrixXd q = hand.clip(start);
     for (const int joint : fit->fitted) {
       if (i > 0) q(joint) = rng.uniform(hand.lower()[joint], hand.upper()[joint]);
@@ -68,7 +68,6 @@ Result<HandShape> shape_hand(const RobotModel& hand, const std::vector<TipPositi
     all_converged = all_converged && fitted->converged;
     const Eigen::VectorXd miss = misses(hand, *fit, q);
     if (miss.maxCoeff() < best.miss.maxCoeff()) best = {q, miss};
-    if (settings.tolerance == std::numeric_limits<double>::infinity()) break;
   }
   if (best.miss.maxCoeff() <= settings.tolerance) return best;
   char least[32];

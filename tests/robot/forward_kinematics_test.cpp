@@ -57,13 +57,17 @@ Matrix4d pose_of(const urdf::ModelInterface& model, const std::string& link, con
   return T;
 }
 
-/// Every moving joint that mimics none is actuated.
-RobotModel whole_model(const std::filesystem::path& file) {
-  UrdfSettings settings;
+urdf::ModelInterfaceSharedPtr other_reading(const std::filesystem::path& file) {
   std::ifstream stream(file);
   std::stringstream text;
   text << stream.rdbuf();
-  for (const auto& [name, link] : urdf::parseURDF(text.str())->links_) settings.without_geometry.insert(name);
+  return urdf::parseURDF(text.str());
+}
+
+/// Every moving joint that mimics none is actuated.
+RobotModel whole_model(const std::filesystem::path& file, const urdf::ModelInterface& model) {
+  UrdfSettings settings;
+  for (const auto& [name, link] : model.links_) settings.without_geometry.insert(name);
   RobotDescription description = read_urdf(file, settings);
   for (const Joint& joint : description.joints) {
     if (joint.type != JointType::fixed && !joint.mimic) description.arm_joints.push_back(joint.name);
@@ -74,11 +78,8 @@ RobotModel whole_model(const std::filesystem::path& file) {
 /// Returns the number of moving joints compared.
 int check_file(const std::filesystem::path& file) {
   SCOPED_TRACE(file.string());
-  const RobotModel robot = whole_model(file);
-  std::ifstream stream(file);
-  std::stringstream text;
-  text << stream.rdbuf();
-  const auto model = urdf::parseURDF(text.str());
+  const auto model = other_reading(file);
+  const RobotModel robot = whole_model(file, *model);
   Rng rng(51);
   for (int sample = 0; sample < 20; ++sample) {
     Eigen::VectorXd q(robot.dof());

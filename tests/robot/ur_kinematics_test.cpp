@@ -79,18 +79,23 @@ struct Sample {
   bool joint6_free() const { return wrist && near < (shoulder ? 1e-4 : 1e-8); }
 };
 
-/// Half of the samples anywhere; the others within 0 or 1e-12 to 1e-3 of one, two or all three singularities, but no
-/// nearer than least.
-Sample draw(const RobotModel& robot, Palm& palm, double least, Rng& rng) {
+/// How near to singularities samples come.
+struct Nearness {
+  double least = 0.0;
+  bool several = true;  ///< two or three at once too
+};
+
+/// Half of the samples anywhere; the others within 0 or 1e-12 to 1e-3 of one, two or all three singularities.
+Sample draw(const RobotModel& robot, Palm& palm, const Nearness& nearness, Rng& rng) {
   Sample sample;
   for (int i = 0; i < 6; ++i) sample.q[i] = rng.uniform(robot.lower()[i], robot.upper()[i]);
   const std::uint64_t kind = rng.index(14) + 1;
-  if (kind > 7) return sample;
+  if (kind > 7 || (!nearness.several && (kind & (kind - 1)) != 0)) return sample;
   sample.shoulder = (kind & 1) != 0;
   sample.elbow = (kind & 2) != 0;
   sample.wrist = (kind & 4) != 0;
   sample.near = rng.uniform() < 0.1 ? 0.0 : std::pow(10.0, -rng.uniform(3, 12));
-  sample.near = std::max(sample.near, least);
+  sample.near = std::max(sample.near, nearness.least);
   const double side = rng.uniform() < 0.5 ? -1.0 : 1.0;
   if (sample.elbow) sample.q[2] = side * (rng.uniform() < 0.5 ? sample.near : kPi - sample.near);
   if (sample.wrist) sample.q[4] = side * (rng.uniform() < 0.5 ? sample.near : kPi - sample.near);
@@ -136,7 +141,7 @@ double allowed(const Sample& sample, double shoulder, double deviation) {
   return error + 2e-6;
 }
 
-void check_round_trips(const RobotModel& robot, int samples, double least = 0.0) {
+void check_round_trips(const RobotModel& robot, int samples, const Nearness& nearness = {}) {
   const UrKinematics arm = analytic(robot);
   Palm palm(robot);
   Rng rng(11);
@@ -144,7 +149,7 @@ void check_round_trips(const RobotModel& robot, int samples, double least = 0.0)
   double largest_missing = 0.0;
   double largest_plain = 0.0;
   for (int i = 0; i < samples; ++i) {
-    const Sample sample = draw(robot, palm, least, rng);
+    const Sample sample = draw(robot, palm, nearness, rng);
     const Isometry3d X_RH = palm.pose(sample.q);
     SCOPED_TRACE(testing::Message() << "sample " << i << " near " << sample.near << " shoulder " << sample.shoulder
                                     << " elbow " << sample.elbow << " wrist " << sample.wrist << " q "
@@ -273,7 +278,8 @@ TEST(UrKinematics, TakesJointsThatTurnTheOtherWay) {
 }
 
 /// Axes off by 1e-9, as angles printed with nine digits leave them: far from 1e-10, which defect correction gives.
-/// Nearer to a singularity than some hundred deviations the arm's errors decide what is reached, and a branch may go.
+/// Nearer to a singularity than some ten deviations, or where several meet, the arm's errors decide what is reached,
+/// and a branch may be lost.
 TEST(UrKinematics, RoundTripsOnAnArmPrintedWithFewDigits) {
   RobotDescription description = load_robot(our_robot());
   Rng rng(4);
@@ -284,7 +290,7 @@ TEST(UrKinematics, RoundTripsOnAnArmPrintedWithFewDigits) {
   }
   const RobotModel robot(description);
   EXPECT_GT(analytic(robot).deviation(), 1e-9);
-  check_round_trips(robot, 20000, 1e-6);
+  check_round_trips(robot, 20000, {1e-7, false});
 }
 
 TEST(UrKinematics, RefusesOtherArms) {
