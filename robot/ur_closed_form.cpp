@@ -45,10 +45,12 @@ UrShoulder ur_shoulder(const UrArm& arm, const UrPose& X, double side, double fr
   const double square = X.p.x() * X.p.x() + X.p.y() * X.p.y();
   const double radius = std::sqrt(square);
   const double miss = std::max(0.0, std::abs(arm.d4) - radius);
-  if (radius < kNoLength) return {std::cos(free1), std::sin(free1), miss};
+  if (radius < kNoLength) return {std::cos(free1), std::sin(free1), free1, miss};
   const double d = std::clamp(arm.d4, -radius, radius);
   const double h = side * std::sqrt((radius - d) * (radius + d));
-  return {(h * X.p.x() - d * X.p.y()) / square, (h * X.p.y() + d * X.p.x()) / square, miss};
+  const double c1 = (h * X.p.x() - d * X.p.y()) / square;
+  const double s1 = (h * X.p.y() + d * X.p.x()) / square;
+  return {c1, s1, std::atan2(s1, c1), miss};
 }
 
 // Row u' R of the rotation is (s5 c6, -s5 s6, c5).
@@ -63,15 +65,15 @@ UrWrist ur_wrist(const UrArm& arm, const UrPose& X, const UrShoulder& shoulder, 
 UrWrist ur_wrist_at(const UrArm& arm, const UrPose& X, const UrShoulder& shoulder, double side, double c6, double s6) {
   const Vector3d w = (shoulder.s1 * X.R.row(0) - shoulder.c1 * X.R.row(1)).transpose();
   UrWrist wrist;
-  wrist.c6 = c6;
-  wrist.s6 = s6;
   wrist.sine = std::sqrt(w.x() * w.x() + w.y() * w.y());
   wrist.theta5 = side * std::atan2(wrist.sine, w.z());
+  wrist.theta6 = std::atan2(s6, c6);
   const Vector3d z4 = -(s6 * X.R.col(0) + c6 * X.R.col(1));  // axis 5: (s234, -c234) in the plane
-  wrist.s234 = along(shoulder, z4);
-  wrist.c234 = -z4.z();
-  wrist.x = along(shoulder, X.p) - arm.d5 * wrist.s234;
-  wrist.y = X.p.z() + arm.d5 * wrist.c234;
+  const double s234 = along(shoulder, z4);
+  const double c234 = -z4.z();
+  wrist.theta234 = std::atan2(s234, c234);
+  wrist.x = along(shoulder, X.p) - arm.d5 * s234;
+  wrist.y = X.p.z() + arm.d5 * c234;
   return wrist;
 }
 
@@ -104,9 +106,8 @@ UrElbow ur_elbow(const UrArm& arm, const UrWrist& wrist, double side, double fre
 
 Vector6d ur_angles(const UrShoulder& shoulder, const UrWrist& wrist, const UrElbow& elbow) {
   Vector6d theta;
-  const double theta4 = std::atan2(wrist.s234, wrist.c234) - elbow.theta2 - elbow.theta3;
-  theta << std::atan2(shoulder.s1, shoulder.c1), elbow.theta2, elbow.theta3, theta4, wrist.theta5,
-      std::atan2(wrist.s6, wrist.c6);
+  theta << shoulder.theta1, elbow.theta2, elbow.theta3, wrist.theta234 - elbow.theta2 - elbow.theta3, wrist.theta5,
+      wrist.theta6;
   return theta;
 }
 

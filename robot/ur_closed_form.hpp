@@ -51,17 +51,17 @@ UrPose ur_pose(const UrArm& arm, const Vector6d& theta);
 
 struct UrShoulder {
   double c1, s1;
+  double theta1;
   double miss;
 };
 /// Cosine and sine of joint 1 from the wrist's distance to axis 1; free1: used when the wrist lies on that axis.
 UrShoulder ur_shoulder(const UrArm& arm, const UrPose& X, double side, double free1);
 
 struct UrWrist {
-  double theta5;
-  double c6, s6;
-  double c234, s234;  ///< of t2 + t3 + t4
-  double x, y;        ///< m, axis 4 in the arm's plane, from axis 2
-  double sine;        ///< of the angle between axes 4 and 6, >= 0
+  double theta5, theta6;
+  double theta234;  ///< t2 + t3 + t4
+  double x, y;      ///< m, axis 4 in the arm's plane, from axis 2
+  double sine;      ///< of the angle between axes 4 and 6, >= 0
 };
 UrWrist ur_wrist(const UrArm& arm, const UrPose& X, const UrShoulder& shoulder, double side);
 /// Sine below which axes 4 and 6 count as parallel: then joint 6 is free, the others following. The pose error is that
