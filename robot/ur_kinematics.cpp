@@ -26,9 +26,8 @@ constexpr double kOutside = 1e-6;    ///< rad: as far outside a limit as noise b
 constexpr double kClamped = 1e-12;   ///< rad: moving a joint this much to its limit needs no correction
 constexpr double kUncertain = 10.0;  ///< deviations: a smaller sine leaves joint 6 to the arm's errors
 constexpr int kCorrections = 4;
-constexpr int kIterations = 60;  ///< of damped least squares, which halve a singular joint's error each
-constexpr double kDescentGoal =
-    1e-13;  ///< m and rad: beside a singularity positions move by the root of the pose's error
+constexpr int kIterations = 60;         ///< of damped least squares, which halve a singular joint's error each
+constexpr double kDescentGoal = 1e-13;  ///< m and rad: beside a singularity positions move by its square root
 
 bool same(const Vector6d& a, const Vector6d& b) {
   for (int i = 0; i < 6; ++i) {
@@ -97,7 +96,7 @@ ArmBranches UrKinematics::branches(const Isometry3d& X_RT) const {
   const double free1 = arm_.sign[0] * middle_[0] + arm_.zero[0];
   for (const double side : {1.0, -1.0}) {
     const UrShoulder shoulder = ur_shoulder(arm_, search.X, side, free1);
-    if (shoulder.miss > kSlack) break;
+    if (shoulder.miss > kSlack + 10.0 * deviation_) break;
     wrist_roots(search, shoulder, {side, 1.0, 1.0});
     wrist_roots(search, shoulder, {side, -1.0, 1.0});
   }
