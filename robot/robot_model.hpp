@@ -78,6 +78,13 @@ RobotDescription scaled(const RobotDescription& description, double factor);
 /// is ordered by name as given in the description, never by position in the URDF.
 class RobotModel {
  public:
+  /// How a joint's position follows from q: multiplier q[index] + offset.
+  struct Drive {
+    int index = -1;  ///< into q; -1: constant (fixed, or not actuated)
+    double multiplier = 1.0;
+    double offset = 0.0;  ///< rad or m
+  };
+
   /// Throws std::invalid_argument when the description is inconsistent (order, names, sizes), InputError when no
   /// position of a joint keeps those that mimic it inside their limits.
   explicit RobotModel(RobotDescription description);
@@ -95,19 +102,12 @@ class RobotModel {
   const Eigen::VectorXd& weights() const { return description_.weights; }  ///< [d]
   int link_index(const std::string& name) const;                           ///< throws std::invalid_argument when absent
   int palm() const { return palm_; }
+  const std::vector<Drive>& drives() const { return drives_; }  ///< [joints of the description]
 
   /// Poses X_RL of every link in the root frame R. Cost: one product per link. q: [d] rad.
   std::vector<Eigen::Isometry3d> link_poses(const Eigen::Ref<const Eigen::VectorXd>& q) const;
   /// The same, reusing the output's memory.
   void link_poses(const Eigen::Ref<const Eigen::VectorXd>& q, std::vector<Eigen::Isometry3d>& X_RL) const;
-
-  /// How a joint's position follows from q: multiplier q[index] + offset.
-  struct Drive {
-    int index = -1;  ///< into q; -1: constant (fixed, or not actuated)
-    double multiplier = 1.0;
-    double offset = 0.0;  ///< rad or m
-  };
-  const std::vector<Drive>& drives() const { return drives_; }  ///< [joints]
 
   /// Pose X_RC of the link that a joint moves, given its parent's: the step that link_poses takes for each joint.
   void place_child(std::size_t joint, const Eigen::Ref<const Eigen::VectorXd>& q, const Eigen::Isometry3d& X_RP,
