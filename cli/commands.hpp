@@ -116,6 +116,16 @@ struct StaleOptions {
   Common common{};
   std::vector<std::filesystem::path> files{};  ///< folders with outside files
 };
+struct RobotOptions {
+  std::string file{};  ///< robot.yaml, hand.yaml or URDF
+  std::uint64_t seed = 1;
+  int samples = 1000;
+  std::vector<std::filesystem::path> packages{};  ///< folders searched for package://NAME, of a URDF
+  bool skeleton = false;
+  bool propose_contacts = false;
+  bool allowed_collisions = false;
+  std::filesystem::path picture{};  ///< SVG to write; empty: none
+};
 struct DemoOptions {
   std::filesystem::path out = "demo";
   std::uint64_t seed = 1;
@@ -139,6 +149,7 @@ int export_objects(const ExportOptions& options, const Console& console);
 int merge(const MergeOptions& options, const Console& console);
 int repair(const RepairOptions& options, const Console& console);
 int stale(const StaleOptions& options, const Console& console);
+int robot(const RobotOptions& options, const Console& console);
 int demo(const DemoOptions& options, const Console& console);
 
 }  // namespace opponens::cli

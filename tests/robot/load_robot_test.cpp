@@ -6,8 +6,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <functional>
 #include <map>
 
 #include <gtest/gtest.h>
@@ -15,6 +13,7 @@
 #include "core/require.hpp"
 #include "core/rng.hpp"
 #include "robot/collision.hpp"
+#include "robot_files.hpp"
 #include "robot_test.hpp"
 
 namespace opponens::robot {
@@ -22,59 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder of one test, removed with it.
-class LoadRobot : public ::testing::Test {
- protected:
-  LoadRobot()
-      : folder_(fs::temp_directory_path() / (std::string("opponens_load_robot_") +
-                                             ::testing::UnitTest::GetInstance()->current_test_info()->name())) {
-    fs::create_directories(folder_);
-  }
-  ~LoadRobot() override { fs::remove_all(folder_); }
-
-  fs::path write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
-    return folder_ / name;
-  }
-
-  /// The message of the InputError that loading this URDF as a hand gives.
-  std::string urdf_error(const std::string& urdf, const std::string& joints = "j") const {
-    write("hand.urdf", urdf);
-    return error_of(write("hand.yaml", "urdf: hand.urdf\npalm_link: a\njoints: [" + joints + "]\n"));
-  }
-
-  static std::string error_of(const fs::path& yaml, RobotDescription (*load)(const fs::path&) = load_hand) {
-    try {
-      load(yaml);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "no error";
-  }
-
-  fs::path folder_;
-};
-
-void expect_contains(const std::string& text, const std::vector<std::string>& parts) {
-  for (const std::string& part : parts) EXPECT_NE(text.find(part), std::string::npos) << part << " is not in: " << text;
-  EXPECT_EQ(text.find('\n'), std::string::npos) << "one line is wanted: " << text;
-}
-
-const std::string kLimit = "<limit lower='-1' upper='1' effort='1' velocity='1'/>";
-
-std::string joint(const std::string& name, const std::string& parent, const std::string& child,
-                  const std::string& type = "revolute", const std::string& inside = kLimit) {
-  return "<joint name='" + name + "' type='" + type + "'><parent link='" + parent + "'/><child link='" + child + "'/>" +
-         inside + "</joint>";
-}
-
-std::string links(const std::string& names) {
-  std::string text;
-  for (const char name : names) text += std::string("<link name='") + name + "'/>";
-  return text;
-}
-
-std::string robot(const std::string& inside) { return "<robot name='r'>" + inside + "</robot>"; }
+using LoadRobot = RobotFiles;
 
 TEST_F(LoadRobot, ErrorsNameFileAndElement) {
   EXPECT_EQ(urdf_error(robot(links("ab") + joint("j", "a", "b"))), "no error");
