@@ -131,6 +131,20 @@ void append_pairs(Lines& lines, const RobotFacts& facts, const std::vector<robot
   }
 }
 
+/// The three pairs that are checked and meet most.
+void append_most_frequent(Lines& lines, const RobotFacts& facts) {
+  std::vector<robot::LinkPairHits> pairs = facts.samples->pairs;
+  std::erase_if(pairs, [](const auto& pair) { return pair.allowed || pair.hits == 0; });
+  std::stable_sort(pairs.begin(), pairs.end(), [](const auto& a, const auto& b) { return a.hits > b.hits; });
+  std::string text;
+  for (std::size_t i = 0; i < std::min<std::size_t>(3, pairs.size()); ++i) {
+    const auto [first, second] = names_of(facts.robot.model, pairs[i]);
+    text += (text.empty() ? "" : ", ") + first + " and " + second + " " +
+            report::percent(static_cast<double>(pairs[i].hits) / facts.samples->samples);
+  }
+  if (!text.empty()) lines.push_back("  most often: " + text);
+}
+
 void append_self_collision(Lines& lines, const RobotFacts& facts) {
   if (!facts.samples) return;
   const auto& samples = *facts.samples;
@@ -144,6 +158,7 @@ void append_self_collision(Lines& lines, const RobotFacts& facts) {
                   " of " + drawn + " (95 % interval " + report::percent(interval.low) + " to " +
                   report::percent(interval.high) + "; seed " + std::to_string(facts.seed) + ")" +
                   (facts.robot.model.description().missing_meshes.empty() ? "" : ", without the missing meshes"));
+  append_most_frequent(lines, facts);
   const auto count = [&](auto member) { return std::count_if(samples.pairs.begin(), samples.pairs.end(), member); };
   const auto adjacent = count([](const auto& pair) { return pair.adjacent; });
   const auto listed = count([](const auto& pair) { return pair.allowed && !pair.adjacent; });

@@ -40,11 +40,12 @@ std::string list_yaml(const std::vector<std::string>& names) {
   std::size_t line = 0;
   for (const std::string& name : names) {
     const std::string item = quoted(name);
-    if (text.size() - line + item.size() > 100) {
+    if (text.size() > 1) text += ",";
+    if (text.size() - line + item.size() > 105) {
       line = text.size();
       text += "\n        ";
     }
-    text += item + (&name == &names.back() ? "" : ", ");
+    text += (text.size() > 1 ? " " : "") + item;
   }
   return text + "]";
 }

@@ -71,8 +71,10 @@ void draw_labels(Svg& svg, std::vector<Label> labels, double width, double heigh
   const auto room = static_cast<std::size_t>(height / kLine);
   std::size_t left = 0;
   while (left < labels.size() && labels[left].at.x() < 0.5 * width) ++left;
-  left = std::min(left, room);
-  if (labels.size() > room) left = std::max(left, labels.size() - room);
+  // Neither side more than two thirds, and no more than there is room for.
+  const std::size_t most = std::min(room, (2 * labels.size() + 2) / 3);
+  left = std::min(left, most);
+  if (labels.size() > most) left = std::max(left, labels.size() - most);
   const auto middle = labels.begin() + static_cast<std::ptrdiff_t>(left);
   draw_side(svg, {labels.begin(), middle}, width, height, true);
   draw_side(svg, {middle, labels.end()}, width, height, false);

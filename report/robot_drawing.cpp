@@ -25,6 +25,7 @@ constexpr double kCellWidth = 600.0;   // px
 constexpr double kCellHeight = 430.0;  // px, with the caption
 constexpr double kCaption = 24.0;      // px under a view
 constexpr double kMargin = 120.0;      // px left and right, for names
+constexpr double kTriad = 52.0;        // px below the names, for the root's axes
 constexpr int kTriangles = 12000;      // of all meshes together
 constexpr double kArrow = 34.0;        // px, a joint's axis
 constexpr const char* kJointColor = "#0050b0";
@@ -166,7 +167,7 @@ void draw_cell(Svg& svg, const Posed& pose, const Points& points, const Cell& ce
   std::vector<Label> labels;
   draw_joints(svg, view, pose, cell, labels);
   if (cell.points) draw_points(svg, view, pose, points, cell.names, labels);
-  draw_labels(svg, std::move(labels), kCellWidth - 6.0, height - 40.0);
+  draw_labels(svg, std::move(labels), kCellWidth - 6.0, height - kTriad);
   draw_triad(svg, view);
   svg.text(0.5 * kCellWidth, height + 15.0, cell.caption, "class=\"axis\" text-anchor=\"middle\"");
   svg.close_clip();
@@ -187,7 +188,7 @@ std::vector<Cell> cells_of(const Posed& pose) {
   std::vector<Cell> cells;
   if (!description.arm_joints.empty()) {
     const std::set<std::string> joints(description.arm_joints.begin(), description.arm_joints.end());
-    cells.push_back({"Arm and its joints", {0.5, -0.75, 0.4}, Vector3d::UnitZ(), false, joints});
+    cells.push_back({"The arm's joints and their axes", {0.5, -0.75, 0.4}, Vector3d::UnitZ(), false, joints});
     cells.push_back({"From the other side", {-0.8, 0.45, 0.35}, Vector3d::UnitZ(), false});
   }
   if (description.hand_joints.empty()) return cells;
@@ -199,9 +200,15 @@ std::vector<Cell> cells_of(const Posed& pose) {
       joints.insert(joint.name);
     }
   }
-  cells.push_back({"Palm side: contact points and tips", palm.side + 0.25 * aside, palm.ahead, true, {}, true, true});
-  cells.push_back({"Back: joints", -palm.side + 0.3 * aside, palm.ahead, true, joints});
-  cells.push_back({"From one side", aside + 0.25 * palm.side, palm.ahead, true, {}, true});
+  cells.push_back({"Palm side: contact points (pink) and tips (orange)",
+                   palm.side + 0.25 * aside,
+                   palm.ahead,
+                   true,
+                   {},
+                   true,
+                   true});
+  cells.push_back({"Back: joints and their axes", -palm.side + 0.3 * aside, palm.ahead, true, joints});
+  cells.push_back({"From one side; rings face away", aside + 0.25 * palm.side, palm.ahead, true, {}, true});
   cells.push_back({"From the other side", -aside + 0.25 * palm.side, palm.ahead, true, {}, true});
   return cells;
 }

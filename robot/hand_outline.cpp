@@ -72,8 +72,23 @@ std::vector<int> longest_chain(const RobotDescription& description, const BodyTr
   return best;
 }
 
-/// What a finger is called by the names of its links and joints; empty when they do not say.
-std::string name_in(const RobotDescription& description, const std::vector<int>& chain) {
+/// The names of a chain's links and joints, in lower case.
+std::vector<std::string> texts_of(const RobotDescription& description, const std::vector<int>& chain) {
+  std::vector<std::string> texts;
+  for (const int index : chain) {
+    const Joint& joint = description.joints[static_cast<std::size_t>(index)];
+    for (std::string text : {description.links[static_cast<std::size_t>(joint.child)].name, joint.name}) {
+      std::transform(text.begin(), text.end(), text.begin(),
+                     [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+      texts.push_back(std::move(text));
+    }
+  }
+  return texts;
+}
+
+/// What each finger is called by the texts of its chain; empty where they do not say. A word that several fingers have
+/// names none of them: "middle" may be a phalanx.
+std::vector<std::string> names_in(const std::vector<std::vector<std::string>>& fingers) {
   using Word = std::pair<const char*, const char*>;
   static constexpr std::array<Word, 8> kWords = {{{"thumb", "thumb"},
                                                   {"index", "index"},
@@ -85,24 +100,21 @@ std::string name_in(const RobotDescription& description, const std::vector<int>&
                                                   {"pinkie", "little"}}};
   static constexpr std::array<Word, 5> kBeginnings = {
       {{"th", "thumb"}, {"ff", "index"}, {"mf", "middle"}, {"rf", "ring"}, {"lf", "little"}}};
-  std::vector<std::string> texts;
-  for (const int index : chain) {
-    const Joint& joint = description.joints[static_cast<std::size_t>(index)];
-    for (std::string text : {description.links[static_cast<std::size_t>(joint.child)].name, joint.name}) {
-      std::transform(text.begin(), text.end(), text.begin(),
-                     [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-      texts.push_back(std::move(text));
+  std::vector<std::string> names(fingers.size());
+  for (const auto& [word, name] : kWords) {
+    const auto has_it = [word = word](const std::vector<std::string>& texts) {
+      return std::any_of(texts.begin(), texts.end(), [&](const auto& text) { return text.find(word) != text.npos; });
+    };
+    if (std::count_if(fingers.begin(), fingers.end(), has_it) != 1) continue;
+    names[static_cast<std::size_t>(std::find_if(fingers.begin(), fingers.end(), has_it) - fingers.begin())] = name;
+  }
+  for (std::size_t i = 0; i < fingers.size(); ++i) {
+    for (const auto& [word, name] : kBeginnings) {  // the Shadow hand's: FFJ1, mfproximal
+      const auto begins = [word = word](const std::string& text) { return text.starts_with(word); };
+      if (names[i].empty() && std::all_of(fingers[i].begin(), fingers[i].end(), begins)) names[i] = name;
     }
   }
-  for (const auto& [word, name] : kWords) {
-    const auto holds = [word = word](const std::string& text) { return text.find(word) != std::string::npos; };
-    if (std::any_of(texts.begin(), texts.end(), holds)) return name;
-  }
-  for (const auto& [word, name] : kBeginnings) {  // the Shadow hand's: FFJ1, mfproximal
-    const auto begins = [word = word](const std::string& text) { return text.starts_with(word); };
-    if (std::all_of(texts.begin(), texts.end(), begins)) return name;
-  }
-  return "";
+  return names;
 }
 
 /// The finger of the tip that lies on the chain or beyond it.
@@ -139,15 +151,19 @@ std::optional<int> find_palm(const RobotDescription& description) {
 std::vector<FingerChain> fingers_of(const RobotDescription& description, int palm) {
   const BodyTree tree = body_tree(description);
   std::vector<FingerChain> fingers;
+  std::vector<std::vector<std::string>> texts;
   std::set<std::string> used;
   for (const int joint : branches_of(tree, tree.body[static_cast<std::size_t>(palm)])) {
     FingerChain finger{"", longest_chain(description, tree, joint), false};
     finger.name = tip_name(description, finger.joints);
-    if (finger.name.empty()) finger.name = name_in(description, finger.joints);
+    if (finger.name.empty() && !description.tips.empty()) continue;
+    texts.push_back(texts_of(description, finger.joints));
     fingers.push_back(std::move(finger));
   }
+  const std::vector<std::string> words = names_in(texts);
   for (std::size_t i = 0; i < fingers.size(); ++i) {
     std::string& name = fingers[i].name;
+    if (name.empty()) name = words[i];
     if (name.empty() || used.contains(name)) name = "finger_" + std::to_string(i + 1);
     used.insert(name);
     fingers[i].thumb = name == "thumb";

@@ -24,8 +24,8 @@ struct FingerChain {
 std::optional<int> find_palm(const RobotDescription& description);
 
 /// The fingers of the palm: each moving joint that leaves its rigid body away from the root starts one, which follows
-/// the longest chain of moving joints (the file's first of equals). Tips, where the description has them, give the
-/// names.
+/// the longest chain of moving joints (the file's first of equals). Where the description has tips, chains
+/// without one are no fingers, and the tips give the names.
 std::vector<FingerChain> fingers_of(const RobotDescription& description, int palm);
 
 }  // namespace opponens::robot

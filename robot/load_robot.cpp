@@ -85,7 +85,9 @@ void attach(RobotDescription& robot, const RobotDescription& hand, int parent, c
     robot.joints.push_back(std::move(joint));
   }
   for (Link link : hand.links) {
-    if (find_link(robot, link.name)) where.fail("arm and hand both have a link '" + link.name + "'");
+    if (find_link(robot, link.name)) {
+      where.fail("arm and hand both have a link '" + link.name + "'; the key arm.link_prefix tells them apart");
+    }
     link.joint = link.joint < 0 ? joint_offset - 1 : link.joint + joint_offset;
     robot.links.push_back(std::move(link));
   }
@@ -175,9 +177,26 @@ RobotDescription load_joined(const RobotFile& robot, const std::filesystem::path
   return description;
 }
 
+/// Key arm.link_prefix, put before the names of the arm's links: arm and hand often both have a 'base_link'. Names in
+/// robot.yaml carry it, so the URDF is asked to leave out the shapes of its own names.
+RobotDescription load_arm_urdf(const RobotFile& robot, const std::filesystem::path& urdf) {
+  const std::optional<YamlValue> prefix = robot.arm.find("link_prefix");
+  if (!prefix) return read_urdf(urdf, robot.settings);
+  const std::string text = prefix->text();
+  UrdfSettings settings = robot.settings;
+  settings.without_geometry.clear();
+  for (const std::string& name : robot.settings.without_geometry) {
+    if (name.starts_with(text)) settings.without_geometry.insert(name.substr(text.size()));
+  }
+  RobotDescription description = read_urdf(urdf, settings);
+  for (Link& link : description.links) link.name = text + link.name;
+  for (MissingMesh& missing : description.missing_meshes) missing.link = text + missing.link;
+  return description;
+}
+
 RobotDescription load_mounted(const RobotFile& robot, const std::filesystem::path& urdf, const YamlValue& mount) {
   mount.allow_keys({"parent", "xyz", "rpy", "support"});
-  RobotDescription description = read_urdf(urdf, robot.settings);
+  RobotDescription description = load_arm_urdf(robot, urdf);
   const NamedValue parent_name = {mount.at("parent").text(), mount.at("parent")};
   const int parent = require_link(description, parent_name);
   description.arm_tip_link = parent_name.name;
@@ -254,7 +273,7 @@ RobotDescription load_robot(const std::filesystem::path& robot_yaml, MissingMesh
   file.allow_keys(
       {"name", "arm", "hand", "mount", "collision", "without_geometry", "weights", "allowed_collisions", "srdf"});
   const YamlValue arm = file.at("arm");
-  arm.allow_keys({"urdf", "packages", "joints"});
+  arm.allow_keys({"urdf", "packages", "joints", "link_prefix"});
   RobotFile robot{file, arm, read_hand_file(file.at("hand").path()), {}, {}};
   robot.settings = {read_packages(arm), read_link_geometry(file), robot.hand.urdf_settings.without_geometry, missing};
   robot.hand.urdf_settings.missing_meshes = missing;
@@ -263,6 +282,7 @@ RobotDescription load_robot(const std::filesystem::path& robot_yaml, MissingMesh
   robot.hand.urdf_settings.without_geometry = robot.settings.without_geometry;
   const std::filesystem::path urdf = arm.at("urdf").path();
   const std::optional<YamlValue> mount = file.find("mount");
+  if (!mount && arm.has("link_prefix")) arm.at("link_prefix").fail("is for an arm and a hand in two files");
   if (!mount && !same_file(urdf, robot.hand.urdf.path())) {
     file.fail("needs a key 'mount', since arm.urdf and the hand's urdf are two files");
   }

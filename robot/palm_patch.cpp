@@ -19,6 +19,7 @@ constexpr int kAcross = 48;          // steps at most along the longer side
 constexpr double kFacing = 0.95;     // cosine of a patch's normals with the side
 constexpr double kFlat = 0.0015;     // m, heights of a patch may differ by this
 constexpr double kOneLevel = 0.005;  // m, points of one palm lie at most so far from its middle height
+constexpr double kWide = 0.005;      // m, height of a triangle that is one
 constexpr double kApart = 0.01;      // m, points nearer than this to each other are one
 
 /// What rays against the side meet, on a grid.
@@ -84,47 +85,53 @@ std::vector<SurfaceHit> inner_cells(const Relief& relief, double margin, const V
   return inner;
 }
 
-/// Greedy: the two furthest from each other, then whichever is furthest from those chosen.
-std::vector<SurfaceHit> spread(const std::vector<SurfaceHit>& cells, std::size_t count) {
-  std::vector<SurfaceHit> chosen;
-  if (cells.empty()) return chosen;
-  double widest = -1.0;
+/// The two cells furthest from each other; one where none is apart from the other.
+std::vector<SurfaceHit> furthest_pair(const std::vector<SurfaceHit>& cells) {
+  std::vector<SurfaceHit> pair = {cells.front()};
+  double widest = kApart;
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    for (std::size_t j = i; j < cells.size(); ++j) {
+    for (std::size_t j = i + 1; j < cells.size(); ++j) {
       const double distance = (cells[i].p - cells[j].p).norm();
       if (distance <= widest + 1e-9) continue;  // rounding must not decide between equals
       widest = distance;
-      chosen = {cells[i], cells[j]};
+      pair = {cells[i], cells[j]};
     }
   }
-  if (widest < kApart) chosen.resize(1);
-  while (chosen.size() < count) {
-    const SurfaceHit* furthest = nullptr;
-    double best = kApart;
-    for (const SurfaceHit& cell : cells) {
-      double nearest = (cell.p - chosen.front().p).norm();
-      for (const SurfaceHit& other : chosen) nearest = std::min(nearest, (cell.p - other.p).norm());
-      if (nearest <= best + 1e-9) continue;
-      best = nearest;
-      furthest = &cell;
-    }
-    if (furthest == nullptr) break;
-    chosen.push_back(*furthest);
+  return pair;
+}
+
+/// The furthest pair and the cell that spans the largest triangle with it, or on a narrow patch the one furthest from
+/// both.
+std::vector<SurfaceHit> spread(const std::vector<SurfaceHit>& cells) {
+  if (cells.empty()) return {};
+  std::vector<SurfaceHit> chosen = furthest_pair(cells);
+  if (chosen.size() < 2) return chosen;
+  const Vector3d a = chosen[0].p;
+  const Vector3d b = chosen[1].p;
+  const SurfaceHit* third = nullptr;
+  double best = 0.0;
+  for (const SurfaceHit& cell : cells) {
+    const double nearest = std::min((cell.p - a).norm(), (cell.p - b).norm());
+    const double aside = (cell.p - a).cross(cell.p - b).norm() / (a - b).norm();
+    const double merit = aside >= kWide ? 1.0 + aside : nearest;  // m; any triangle before any line
+    if (nearest < kApart || merit <= best + 1e-9) continue;
+    best = merit;
+    third = &cell;
   }
-  chosen.resize(std::min(chosen.size(), count));
+  if (third != nullptr) chosen.push_back(*third);
   return chosen;
 }
 
 }  // namespace
 
-std::vector<SurfaceHit> patch_points(const HandBody& body, const Vector3d& outward, std::size_t count) {
+std::vector<SurfaceHit> patch_points(const HandBody& body, const Vector3d& outward) {
   if (body.geometry.empty()) return {};
   const Relief relief = relief_of(body, outward);
   std::vector<SurfaceHit> most;
   for (const double margin : {0.010, 0.006, 0.003, 0.0}) {
-    std::vector<SurfaceHit> points = spread(inner_cells(relief, margin, outward), count);
+    std::vector<SurfaceHit> points = spread(inner_cells(relief, margin, outward));
     if (points.size() > most.size()) most = std::move(points);
-    if (most.size() == count) break;
+    if (most.size() == 3) break;
   }
   return most;
 }

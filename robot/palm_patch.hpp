@@ -10,8 +10,9 @@
 
 namespace opponens::robot {
 
-/// Up to `count` points of a body's flattest patch that faces `outward` (unit), far from each other and from the
-/// patch's rim: 10 mm where the patch is large enough, else 6, 3 or one step of the grid (2 mm, or a 48th of the body).
-std::vector<SurfaceHit> patch_points(const HandBody& body, const Eigen::Vector3d& outward, std::size_t count);
+/// Up to three points of a body's flattest patch that faces `outward` (unit), far from each other, in a triangle where
+/// the patch is wide enough, and away from the patch's rim: 10 mm where the patch is large enough, else 6, 3 or one
+/// step of the grid (2 mm, or a 48th of the body).
+std::vector<SurfaceHit> patch_points(const HandBody& body, const Eigen::Vector3d& outward);
 
 }  // namespace opponens::robot

@@ -175,7 +175,9 @@ void name_by_place(const RobotModel& robot, std::vector<FingerBones>& fingers) {
   for (FingerBones& finger : fingers) {
     if (&finger != &first) others.emplace_back((end_of(finger) - end_of(first)).norm(), &finger);
   }
-  std::sort(others.begin(), others.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  // Fingers as far from the thumb as each other, to the millimetre, stay in the file's order.
+  std::stable_sort(others.begin(), others.end(),
+                   [](const auto& a, const auto& b) { return std::round(1e3 * a.first) < std::round(1e3 * b.first); });
   first.name = "thumb";
   first.thumb = true;
   for (std::size_t i = 0; i < others.size(); ++i) others[i].second->name = kNames[i];

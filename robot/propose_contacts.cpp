@@ -120,31 +120,36 @@ void append_pads(const Hand& hand, const FingerBones& finger, ContactProposal& p
   }
 }
 
+/// Where the surface is that a given tip means: some lie a little off the shapes that count.
+std::optional<SurfaceHit> surface_at(const Hand& hand, const FingerBones& finger, const SurfacePoint& tip) {
+  constexpr double kNear = 0.005;  // m
+  const Eigen::Isometry3d& X_PL = hand.X_PL[static_cast<std::size_t>(tip.link)];
+  const Vector3d p = X_PL * tip.p_L;
+  const std::optional<SurfaceHit> hit = outermost(finger.phalanges.back().body, p, X_PL.linear() * tip.n_L);
+  return hit && (hit->p - p).norm() < kNear ? hit : std::nullopt;
+}
+
 void append_tip(const Hand& hand, const FingerBones& finger, ContactProposal& proposal) {
   const auto& given = hand.robot.description().tips;
   const auto known =
       std::find_if(given.begin(), given.end(), [&](const SurfacePoint& tip) { return tip.finger == finger.name; });
-  SurfacePoint tip;
-  if (known != given.end()) {
-    tip = *known;
-  } else {
-    const std::optional<SurfaceHit> hit = tip_of(finger.phalanges.back());
-    if (!hit) {
-      proposal.notes.push_back("finger '" + finger.name + "': no tip found");
-      return;
-    }
-    tip = surface_point(hand, *hit, finger.name, finger.name);
+  std::optional<SurfaceHit> hit;
+  if (known != given.end()) hit = surface_at(hand, finger, *known);
+  if (!hit) hit = tip_of(finger.phalanges.back());
+  if (known != given.end()) proposal.tips.push_back(*known);
+  if (!hit) {
+    proposal.notes.push_back("finger '" + finger.name + "': no tip found");
+    return;
   }
-  proposal.tips.push_back(tip);
-  tip.name = finger.name + "_tip";
-  proposal.contact_points.push_back(tip);
+  if (known == given.end()) proposal.tips.push_back(surface_point(hand, *hit, finger.name, finger.name));
+  proposal.contact_points.push_back(surface_point(hand, *hit, finger.name, finger.name + "_tip"));
 }
 
 void append_palm(const Hand& hand, const std::vector<FingerBones>& fingers, ContactProposal& proposal) {
   const Vector3d side = palm_directions(fingers).side;
   const HandBody palm = hand_body(hand.robot, {hand.robot.palm()}, hand.X_PL);
   std::vector<SurfaceHit> points;
-  if (side.norm() > 0.0) points = patch_points(palm, side, kPalmPoints);
+  if (side.norm() > 0.0) points = patch_points(palm, side);
   for (std::size_t i = 0; i < points.size(); ++i) {
     proposal.contact_points.push_back(surface_point(hand, points[i], "palm", "palm_" + std::to_string(i + 1)));
   }

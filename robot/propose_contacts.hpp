@@ -26,7 +26,8 @@ struct ContactProposal {
 /// range: fingers bend further to the palm than back. A prismatic or evenly ranged last joint closes towards the other
 /// fingers. Pads are where rays against that side first meet the body near the middle of the bone, preferring normals
 /// along the side's direction. The tip lies where the last body reaches furthest, 30 deg from its end to the pad side
-/// (as in models/); given tips are kept. The palm's side is the mean of the fingers' sides (of their directions
+/// (as in models/); given tips are kept, and the
+/// contact point is the surface next to them. The palm's side is the mean of the fingers' sides (of their directions
 /// where they oppose each other, as grippers' jaws do); its points are far apart on the palm link's flattest patch.
 /// A finger is a thumb when its name says so. Deterministic. Cost O(rays x triangles).
 ContactProposal propose_contacts(const RobotModel& robot);

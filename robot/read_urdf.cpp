@@ -13,6 +13,7 @@
 
 #include "core/require.hpp"
 #include "robot/text_file.hpp"
+#include "robot/urdf_check.hpp"
 #include "robot/urdf_geometry.hpp"
 
 namespace opponens::robot {
@@ -107,6 +108,7 @@ Outline outline_of(const std::filesystem::path& file, const std::string& text) {
   const TiXmlElement* robot = document.FirstChildElement("robot");
   if (!robot) fail_urdf(file, "has no <robot> element");
   check_size(*robot, file);
+  check_urdf_numbers(file, *robot);
   Outline outline;
   std::map<std::string, std::string> joint_of_child;
   std::map<std::string, std::string> parent_of;
@@ -245,6 +247,7 @@ RobotDescription read_urdf(const std::filesystem::path& file, const UrdfSettings
     link.collision = shapes.shapes_of(*model->links_.at(link.name));
   }
   description.missing_meshes = shapes.missing();
+  description.notes.insert(description.notes.end(), shapes.notes().begin(), shapes.notes().end());
   for (const auto& [tag, count] : outline.ignored) {
     description.notes.push_back(file.filename().string() + ": <" + tag + "> ignored (" + std::to_string(count) + ")");
   }

@@ -38,7 +38,7 @@ TEST_F(BadUrdf, MeshPathsStayInTheirPackage) {
   write_stl(folder_ / "pack/meshes/t.stl");
   write_stl(folder_ / "secret/t.stl");
   EXPECT_EQ(with_mesh("package://x/meshes/t.stl", packages), "no error");
-  EXPECT_EQ(with_mesh("package://x/other/../meshes/t.stl", packages), "no error");
+  EXPECT_EQ(with_mesh("package://x/meshes/../meshes/t.stl", packages), "no error");
   for (const char* path : {"package://x/../secret/t.stl", "package://x/meshes/../../secret/t.stl", "package://../t.stl",
                            "package://x//etc/passwd", "package:///etc/t.stl", "package://x/../../../../etc/t.stl"}) {
     expect_contains(with_mesh(path, packages), {"hand.urdf", "'a'", path, "leaves its package"});
@@ -104,8 +104,9 @@ TEST_F(BadUrdf, NestingDoesNotExhaustTheStack) {
 TEST_F(BadUrdf, MoreJointsThanAnyRobot) {
   std::string chain = "<link name='l0'/>";
   for (int i = 1; i <= 2100; ++i) {
+    const std::string before = std::to_string(i - 1);
     const std::string n = std::to_string(i);
-    chain += "<link name='l" + n + "'/>" + joint("j" + n, "l" + std::to_string(i - 1), "l" + n);
+    chain += "<link name='l" + n + "'/>" + joint("j" + n, "l" + before, "l" + n);
   }
   expect_contains(urdf_error(robot(chain)), {"hand.urdf", "more than 2000 joints"});
 }

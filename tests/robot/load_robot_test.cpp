@@ -155,6 +155,30 @@ TEST_F(LoadRobot, TreeOrderMimicNotesAndSupport) {
             (std::set<std::pair<int, int>>{{0, 1}, {1, 2}, {1, 3}, {2, 3}, {3, 4}, {3, 5}, {4, 6}, {5, 6}}));
 }
 
+TEST_F(LoadRobot, PrefixTellsTheArmsLinksFromTheHands) {
+  const std::string box = "<collision><geometry><box size='1 1 1'/></geometry></collision>";
+  write("hand.urdf", robot("<link name='a'>" + box + "</link>" + links("b") + joint("j", "a", "b")));
+  write("arm.urdf", robot("<link name='a'>" + box + "</link><link name='b'>" + box + "</link>" + joint("s", "a", "b")));
+  write("hand.yaml", "urdf: hand.urdf\npalm_link: a\njoints: [j]\n");
+  const std::string end = "hand: hand.yaml\nmount: {parent: arm_b}\n";
+  const std::string arm = "arm: {urdf: arm.urdf, joints: [s], link_prefix: arm_}\n";
+  const RobotDescription loaded = load_robot(write("r.yaml", arm + end + "without_geometry: [arm_b, a]\n"));
+  std::vector<std::string> names;
+  std::vector<std::size_t> shapes;
+  for (const Link& link : loaded.links) {
+    names.push_back(link.name);
+    shapes.push_back(link.collision.size());
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"arm_a", "arm_b", "a", "b"}));
+  EXPECT_EQ(shapes, (std::vector<std::size_t>{1, 0, 0, 0})) << "of the arm's b and the hand's a";
+  EXPECT_EQ(loaded.arm_tip_link, "arm_b");
+  const auto yaml_error = [&](const std::string& text) { return error_of(write("r.yaml", text), load_robot); };
+  expect_contains(yaml_error("arm: {urdf: arm.urdf, joints: [s]}\nhand: hand.yaml\nmount: {parent: b}\n"),
+                  {"r.yaml:3", "'a'", "arm.link_prefix"});
+  expect_contains(yaml_error("arm: {urdf: hand.urdf, joints: [s], link_prefix: arm_}\nhand: hand.yaml\n"),
+                  {"r.yaml:1", "link_prefix", "two files"});
+}
+
 /// Signed distance to the surface of a link's primitive shapes: the least over them.
 double surface_distance(const Link& link, const Eigen::Vector3d& p_L) {
   double least = 1e9;
@@ -202,7 +226,9 @@ TEST_F(LoadRobot, RealRobotsLoadWithTheirPointsOnTheSurface) {
   setenv("OPPONENS_SHARED_DATA", OPPONENS_SHARED_DATA, 1);
   const std::string folder = OPPONENS_SOURCE_DIR "/tests/data/robots/";
   check_hand(load_robot(folder + "example_ur5_allegro_right.yaml"), 3);
+  check_hand(load_robot(folder + "example_ur5_allegro_left.yaml"), 3);
   check_hand(load_robot(folder + "paper_lab_ur5_allegro_right_urdf.yaml"), 3);
+  check_hand(load_robot(folder + "paper_lab_ur5_allegro_left_urdf.yaml"), 3);
   const RobotDescription visual = load_robot(folder + "paper_lab_ur5_allegro_right_visual.yaml");
   std::size_t triangles = 0;
   for (const Link& link : visual.links) {

@@ -134,10 +134,13 @@ TEST(ProposeContacts, OurAllegroGetsTheLayoutOfFigure5) {
       EXPECT_LT((found.p_L - point.p_L).norm(), 0.008) << point.name;
     }
     for (const SurfacePoint& point : proposal.contact_points) {
-      if (point.finger == "palm") EXPECT_EQ(point.n_L, Vector3d::UnitX()) << "out of the palm";
+      if (point.finger == "palm") {
+        EXPECT_EQ(point.n_L, Vector3d::UnitX()) << "out of the palm";
+      }
     }
-    if (!tips_too)
+    if (!tips_too) {
       EXPECT_EQ(named(proposal.tips, "index").p_L, named(given.tips, "index").p_L) << "given ones are kept";
+    }
   }
 }
 
@@ -199,9 +202,15 @@ TEST(ProposeContacts, JawsFaceEachOtherAndThePalmLiesBehindThem) {
     expect_on_surface(hand, proposal.contact_points);
     int pads = 0;
     for (const SurfacePoint& point : proposal.contact_points) {
-      if (point.finger == "palm") EXPECT_EQ(point.n_L, Vector3d::UnitZ());
-      if (point.link == 1) EXPECT_LT(point.n_L.x(), -0.5) << point.name;
-      if (point.link == 2) EXPECT_GT(point.n_L.x(), 0.5) << point.name;
+      if (point.finger == "palm") {
+        EXPECT_EQ(point.n_L, Vector3d::UnitZ());
+      }
+      if (point.link == 1) {
+        EXPECT_LT(point.n_L.x(), -0.5) << point.name;
+      }
+      if (point.link == 2) {
+        EXPECT_GT(point.n_L.x(), 0.5) << point.name;
+      }
       pads += point.finger == "palm" ? 0 : 1;
     }
     EXPECT_EQ(pads, 8) << "three pads and a tip each, on their only link";
@@ -261,8 +270,11 @@ TEST(HandOutline, FingersAreNamedByTipsByWordsOrByPlace) {
     EXPECT_EQ(model.links()[static_cast<std::size_t>(tip.link)].name, links.at(tip.finger));
   }
   RobotDescription human = load_hand(ours("human_hand/human_hand.yaml"));
+  const std::set<std::string> five = {"index", "little", "middle", "ring", "thumb"};
+  EXPECT_EQ(names(human), five) << "the forearm hangs on the palm too, but has no tip";
   human.tips.clear();
-  EXPECT_EQ(names(human), (std::set<std::string>{"index", "little", "middle", "ring", "thumb"})) << "by their links";
+  const std::set<std::string> found = names(human);
+  EXPECT_TRUE(std::includes(found.begin(), found.end(), five.begin(), five.end())) << "by their links";
 }
 
 TEST(ProposeMapping, IsThatOfOurAllegro) {
@@ -294,7 +306,9 @@ TEST(ProposeContacts, RealHands) {
   EXPECT_EQ(count.at("thumb"), 3);
   EXPECT_EQ(count.at("palm"), 3);
   for (const SurfacePoint& point : found.contact_points) {
-    if (point.finger != "thumb") EXPECT_LT(point.n_L.y(), -0.4) << point.name << ": -y is the Shadow hand's palm side";
+    if (point.finger != "thumb") {
+      EXPECT_LT(point.n_L.y(), -0.4) << point.name << ": -y is the Shadow hand's palm side";
+    }
   }
   const auto mapping = propose_mapping(RobotModel(shadow));
   ASSERT_TRUE(mapping.has_value());

@@ -15,15 +15,15 @@ namespace {
 
 constexpr double kMeets = 0.25;  ///< share of the slider's range at which its cube meets the wall
 
-/// A base, a slider along x in [0, 1] with a cube that meets the wall's cube for x < kMeets, a tool on the slider's far
-/// side that lies inside another part, and a far body that nothing reaches. Links: base 0, slider 1, hinge 2, wall 3,
-/// overlap 4, far 5.
+/// A base, a slider along x in [0, 1] with a cube that meets the wall for x < kMeets, a part two joints on that
+/// overlaps the slider's cube, and a far body that nothing reaches. Links: base 0, slider 1, hinge 2, wall 3, overlap
+/// 4, far 5.
 RobotDescription slider() {
   RobotDescription robot;
   robot.name = "slider";
   robot.palm_link = "base";
-  const auto cube = [](double x, double y) {
-    return std::vector<Geometry>{{Box{Eigen::Vector3d(0.1, 0.1, 0.1)}, at(x, y, 0)}};
+  const auto box = [](double length, double x) {
+    return std::vector<Geometry>{{Box{Eigen::Vector3d(length, 0.1, 0.1)}, at(x, 0, 0)}};
   };
   const auto add = [&](const std::string& name, int parent, JointType type, const std::vector<Geometry>& shape) {
     const int joint = static_cast<int>(robot.joints.size());
@@ -41,11 +41,11 @@ RobotDescription slider() {
     if (type != JointType::fixed) robot.hand_joints.push_back(name + "_joint");
   };
   robot.links.push_back({"base", -1, {}});
-  add("slider", 0, JointType::prismatic, cube(0.0, 0.0));
+  add("slider", 0, JointType::prismatic, box(0.1, 0.0));
   add("hinge", 1, JointType::revolute, {});
-  add("wall", 0, JointType::fixed, cube(kMeets - 0.1 - 1e-12, 0.0));
-  add("overlap", 2, JointType::revolute, cube(0.05, 0.0));
-  add("far", 0, JointType::fixed, cube(-20.0, 0.0));
+  add("wall", 0, JointType::fixed, box(2.0, kMeets - 1.05));
+  add("overlap", 2, JointType::revolute, box(0.1, 0.05));
+  add("far", 0, JointType::fixed, box(0.1, -20.0));
   robot.weights = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(robot.hand_joints.size()));
   return robot;
 }
