@@ -133,7 +133,7 @@ void draw_points(Svg& svg, const View& view, const Posed& pose, const Points& po
   for (const auto& tip : points.tips) {
     draw_point(svg, view, pose, tip, kTipColor);
     const auto same = [&](const robot::SurfacePoint& point) {
-      return point.link == tip.link && (point.p_L - tip.p_L).norm() < 1e-6;
+      return point.link == tip.link && (point.p_L - tip.p_L).norm() < 0.002;
     };
     const bool shown = std::any_of(points.contacts.begin(), points.contacts.end(), same);
     if (names && !shown) labels.push_back({place(tip), "tip " + tip.name, kTipColor});

@@ -71,7 +71,17 @@ CASES = {
 }
 
 
+def limit_memory():
+    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+
+
 class BadRobots(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        # A sanitizer's shadow memory does not fit under a limit; its own checks stand in.
+        fits = subprocess.run([PROGRAM, "--version"], capture_output=True, preexec_fn=limit_memory).returncode == 0
+        cls.limit = staticmethod(limit_memory) if fits else None
+
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
@@ -83,7 +93,7 @@ class BadRobots(unittest.TestCase):
 
     def run_robot(self, file, *more):
         done = subprocess.run([PROGRAM, "robot", str(file), "--samples", "0", *more], capture_output=True, timeout=60,
-                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY)))
+                              preexec_fn=self.limit)
         return done.returncode, done.stdout.decode(errors="replace"), done.stderr.decode(errors="replace")
 
     def refuse(self, file, words):
