@@ -159,8 +159,8 @@ std::string skeleton_yaml(const RobotFacts& facts) {
     text += mapping_yaml(*mapping);
   } else {
     text +=
-        "# mapping: `opponens retarget` needs one (docs/robot_files.md); fingers called thumb, index, middle, ring or\n"
-        "#   little would have been mapped here\n";
+        "# mapping: `opponens retarget` needs one (docs/robot_files.md); a right hand whose fingers are called thumb,\n"
+        "#   index, middle, ring or little would have been given one\n";
   }
   const auto& always = facts.suggestion.always;
   if (!always.empty()) text += "allowed_collisions:\n";

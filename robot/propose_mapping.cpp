@@ -43,6 +43,25 @@ void copy_phalanges(const RobotModel& robot, const FingerBones& finger, const st
   }
 }
 
+Eigen::Vector3d end_of(const FingerBones& finger) { return finger.phalanges.back().body.vertices.rowwise().mean(); }
+
+/// Whether the thumb ends on the other side of the fingers than a right hand's. y: from the little finger's side to the
+/// thumb's in a right hand's palm, unit.
+bool is_left(const std::vector<FingerBones>& fingers, const Eigen::Vector3d& y) {
+  constexpr double kClear = 0.01;  // m: hands whose thumb is in the middle are neither
+  double thumb = 0.0;
+  double others = 0.0;
+  int count = 0;
+  for (const FingerBones& finger : fingers) {
+    if (finger.phalanges.empty()) continue;
+    if (finger.thumb) thumb = y.dot(end_of(finger));
+    if (!finger.thumb) others += y.dot(end_of(finger));
+    count += finger.thumb ? 0 : 1;
+  }
+  const bool has_thumb = std::any_of(fingers.begin(), fingers.end(), [](const auto& finger) { return finger.thumb; });
+  return has_thumb && count > 0 && thumb - others / count < -kClear;
+}
+
 }  // namespace
 
 std::optional<HandMapping> propose_mapping(const RobotModel& robot) {
@@ -69,6 +88,7 @@ std::optional<HandMapping> propose_mapping(const RobotModel& robot) {
   mapping.R_robot_human.col(0) = palm.side;
   mapping.R_robot_human.col(2) = along.normalized();
   mapping.R_robot_human.col(1) = mapping.R_robot_human.col(2).cross(mapping.R_robot_human.col(0));
+  if (is_left(fingers, mapping.R_robot_human.col(1))) return std::nullopt;
   return mapping;
 }
 

@@ -315,6 +315,14 @@ TEST(ProposeContacts, RealHands) {
   const HandMapping given = load_hand_mapping(ours("shadow_hand/shadow_right.yaml"));
   EXPECT_LT((mapping->R_robot_human - given.R_robot_human).norm(), 0.05);
 
+  const auto unmapped = [&](const std::string& file) {
+    return !propose_mapping(RobotModel(load_urdf(hands + file, {}))).has_value();
+  };
+  EXPECT_TRUE(unmapped("allegro_hand/allegro_hand_left.urdf")) << "the human hand is a right one";
+  EXPECT_TRUE(unmapped("shadow_hand/shadow_hand_left.urdf"));
+  EXPECT_FALSE(unmapped("allegro_hand/allegro_hand_right.urdf"));
+  EXPECT_FALSE(unmapped("shadow_hand/shadow_hand_right.urdf"));
+
   const RobotDescription barrett = load_hand(ours("barrett_hand/barrett_right.yaml"));
   const ContactProposal three = propose_contacts(RobotModel(without_points(barrett, false)));
   expect_on_surface(barrett, three.contact_points);
