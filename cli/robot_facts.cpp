@@ -29,7 +29,7 @@ RobotFileKind kind_of(const fs::path& file) {
   if (file.extension() == ".urdf" || (first != std::string::npos && text[first] == '<')) return RobotFileKind::urdf;
   const robot::YamlValue yaml = robot::YamlValue::load(file);
   if (yaml.is_map() && yaml.has("palm_link")) return RobotFileKind::hand_yaml;
-  if (yaml.is_map() && yaml.has("hand")) return RobotFileKind::robot_yaml;
+  if (yaml.is_map() && (yaml.has("hand") || yaml.has("arms"))) return RobotFileKind::robot_yaml;
   throw InputError(file.string() + ": is neither a robot.yaml (key hand), a hand.yaml (key palm_link) nor a URDF");
 }
 

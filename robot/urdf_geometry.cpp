@@ -49,10 +49,15 @@ std::optional<std::filesystem::path> package_folder(const std::string& package, 
   return package_above(urdf_file, package);
 }
 
-/// Whether `inner` lies in `folder` once links are followed; what does not exist is judged by its names.
+/// Whether `inner` lies in `folder` once links are followed; what does not exist is judged by its names, and what
+/// cannot be followed (links in a circle) is left to the check that it is a file.
 bool lies_in(const std::filesystem::path& inner, const std::filesystem::path& folder) {
-  const auto relative =
-      std::filesystem::weakly_canonical(inner).lexically_relative(std::filesystem::weakly_canonical(folder));
+  std::error_code error;
+  const std::filesystem::path full = std::filesystem::weakly_canonical(inner, error);
+  if (error) return true;
+  const std::filesystem::path root = std::filesystem::weakly_canonical(folder, error);
+  if (error) return true;
+  const std::filesystem::path relative = full.lexically_relative(root);
   return !relative.empty() && *relative.begin() != "..";
 }
 

@@ -50,6 +50,9 @@ TEST_F(BadUrdf, MeshPathsStayInTheirPackage) {
   EXPECT_EQ(with_mesh("package://x/same/t.stl", packages), "no error");
   EXPECT_EQ(with_mesh("package://x/meshes/t.stl", "packages: {x: alias}\n"), "no error");
   expect_contains(with_mesh("package://x/out/t.stl", packages), {"hand.urdf", "'a'", "leaves its package"});
+  fs::create_symlink("circle.stl", folder_ / "pack/circle.stl");
+  expect_contains(with_mesh("package://x/circle.stl", packages), {"hand.urdf", "'a'", "circle.stl"});
+  expect_contains(with_mesh("package://x/" + std::string(5000, 'a') + ".stl", packages), {"hand.urdf", "'a'"});
 }
 
 TEST_F(BadUrdf, PackagesAreFoundAboveTheUrdf) {
