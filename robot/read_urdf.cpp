@@ -56,6 +56,8 @@ urdf::ModelInterfaceSharedPtr parse(const std::filesystem::path& file, const std
 struct Outline {
   std::vector<std::string> joints;     ///< in the file's order
   std::map<std::string, int> ignored;  ///< tag -> how often
+  std::vector<std::string> notes;      ///< shapes left out
+  std::string text;                    ///< the file without them
 };
 
 void count_ignored(const TiXmlElement& element, Outline& outline) {
@@ -102,14 +104,22 @@ void check_size(const TiXmlElement& robot, const std::filesystem::path& file) {
   }
 }
 
+std::string printed(const TiXmlDocument& document) {
+  TiXmlPrinter printer;
+  document.Accept(&printer);
+  return printer.Str();
+}
+
 Outline outline_of(const std::filesystem::path& file, const std::string& text) {
   TiXmlDocument document;
   parse_xml(file, text, document);
-  const TiXmlElement* robot = document.FirstChildElement("robot");
+  TiXmlElement* const robot = document.FirstChildElement("robot");
   if (!robot) fail_urdf(file, "has no <robot> element");
   check_size(*robot, file);
   check_urdf_numbers(file, *robot);
   Outline outline;
+  outline.notes = drop_unknown_shapes(file, *robot);
+  outline.text = outline.notes.empty() ? text : printed(document);
   std::map<std::string, std::string> joint_of_child;
   std::map<std::string, std::string> parent_of;
   for (const TiXmlElement* joint = robot->FirstChildElement("joint"); joint;
@@ -232,7 +242,7 @@ void check_mimics(const RobotDescription& description, const std::filesystem::pa
 RobotDescription read_urdf(const std::filesystem::path& file, const UrdfSettings& settings) {
   const std::string text = read_text_file(file, "a URDF file");
   const Outline outline = outline_of(file, text);
-  const urdf::ModelInterfaceSharedPtr model = parse(file, text);
+  const urdf::ModelInterfaceSharedPtr model = parse(file, outline.text);
 
   RobotDescription description;
   description.name = model->getName();
@@ -247,7 +257,7 @@ RobotDescription read_urdf(const std::filesystem::path& file, const UrdfSettings
     link.collision = shapes.shapes_of(*model->links_.at(link.name));
   }
   description.missing_meshes = shapes.missing();
-  description.notes.insert(description.notes.end(), shapes.notes().begin(), shapes.notes().end());
+  description.notes.insert(description.notes.end(), outline.notes.begin(), outline.notes.end());
   for (const auto& [tag, count] : outline.ignored) {
     description.notes.push_back(file.filename().string() + ": <" + tag + "> ignored (" + std::to_string(count) + ")");
   }

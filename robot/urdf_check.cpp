@@ -62,7 +62,36 @@ void check_element(const std::filesystem::path& file, const TiXmlElement& elemen
   }
 }
 
+bool has_known_shape(const TiXmlElement& body) {
+  const TiXmlElement* const geometry = body.FirstChildElement("geometry");
+  const TiXmlElement* const shape = geometry == nullptr ? nullptr : geometry->FirstChildElement();
+  if (shape == nullptr) return false;
+  const std::string& tag = shape->ValueStr();
+  if (tag != "mesh") return tag == "box" || tag == "sphere" || tag == "cylinder";
+  const char* const name = shape->Attribute("filename");
+  return name != nullptr && *name != '\0';
+}
+
 }  // namespace
+
+std::vector<std::string> drop_unknown_shapes(const std::filesystem::path& file, TiXmlElement& robot) {
+  std::vector<std::string> notes;
+  for (TiXmlElement* link = robot.FirstChildElement("link"); link; link = link->NextSiblingElement("link")) {
+    for (const char* tag : {"visual", "collision"}) {
+      for (TiXmlElement* body = link->FirstChildElement(tag); body;) {
+        TiXmlElement* const next = body->NextSiblingElement(tag);
+        if (!has_known_shape(*body)) {
+          const char* const name = link->Attribute("name");
+          notes.push_back(file.filename().string() + ": link '" + (name ? name : "") + "': <" + tag + "> in line " +
+                          std::to_string(body->Row()) + " has no box, sphere, cylinder or mesh and is left out");
+          link->RemoveChild(body);
+        }
+        body = next;
+      }
+    }
+  }
+  return notes;
+}
 
 void check_urdf_numbers(const std::filesystem::path& file, const TiXmlElement& robot) {
   for (const char* tag : {"link", "joint"}) {

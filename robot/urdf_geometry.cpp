@@ -147,11 +147,7 @@ template <typename Elements>
 std::vector<Geometry> ShapeReader::shapes(const Elements& elements, const std::string& link) {
   std::vector<Geometry> result;
   for (const auto& element : elements) {
-    if (!element || !element->geometry) {
-      notes_.push_back(file_.filename().string() + ": link '" + link +
-                       "': a shape without a box, sphere, cylinder or mesh is left out: nothing will collide with it");
-      continue;
-    }
+    if (!element || !element->geometry) continue;  // drop_unknown_shapes has noted it
     const Eigen::Isometry3d X_BG = urdf_pose(element->origin, file_, "link '" + link + "'");
     if (const std::optional<Shape> found = shape(*element->geometry, link)) result.push_back({*found, X_BG});
   }

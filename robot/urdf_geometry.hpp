@@ -41,8 +41,6 @@ class ShapeReader {
   std::vector<Geometry> shapes_of(const urdf::Link& link);
   /// Meshes passed over so far; always empty when the settings refuse them.
   const std::vector<MissingMesh>& missing() const { return missing_; }
-  /// Shapes left out since their kind is not understood (a capsule, an empty <geometry>), a sentence each.
-  const std::vector<std::string>& notes() const { return notes_; }
 
  private:
   template <typename Elements>
@@ -54,7 +52,6 @@ class ShapeReader {
   UrdfSettings settings_;
   MeshCache cache_;
   std::vector<MissingMesh> missing_;
-  std::vector<std::string> notes_;
 };
 
 }  // namespace opponens::robot
