@@ -214,6 +214,24 @@ void declare_export(CLI::App& app, ExportOptions& options) {
   app.add_option("--out", options.out, "File to write with --format; of csv: the folder");
 }
 
+void declare_robot(CLI::App& app, RobotOptions& options) {
+  app.add_option("FILE", options.file, "robot.yaml, hand.yaml, or a URDF without either")->required();
+  add_seed(app, options.seed);
+  app.add_option("--samples", options.samples, "Random configurations checked for self-collision; 0 = none")
+      ->check(CLI::Range(0, 10000000))
+      ->capture_default_str();
+  app.add_option("--packages", options.packages, "Folders searched for package://NAME; of a URDF without YAML");
+  CLI::Option* const skeleton =
+      app.add_flag("--skeleton", options.skeleton, "Print a hand.yaml to start from, made from a URDF; nothing else");
+  CLI::Option* const contacts = app.add_flag("--propose-contacts", options.propose_contacts,
+                                             "Print tips and contact points found on the hand's surface, as YAML");
+  CLI::Option* const allowed = app.add_flag("--allowed-collisions", options.allowed_collisions,
+                                            "Print the link pairs that need no checking, as YAML");
+  skeleton->excludes(contacts)->excludes(allowed);
+  contacts->excludes(allowed);
+  app.add_option("--picture", options.picture, "SVG file to write: the robot from several sides");
+}
+
 /// The commands that look after a store.
 void add_store_commands(Builder& add) {
   add.command<ExportOptions>("export", "Write objects to one file, or in the form of other programs", export_objects,
@@ -271,6 +289,7 @@ void add_commands(Builder& add) {
                              declare_show(app, options);
                              app.get_option("ID")->required();
                            });
+  add.command<RobotOptions>("robot", "Say what is understood of a robot's or a hand's files", robot, declare_robot);
   add_store_commands(add);
 }
 

@@ -130,6 +130,16 @@ struct MeshOptions {
   std::filesystem::path repair{};  ///< STL to write; empty: only check
   int simplify = 0;                ///< triangles wanted; 0: all
 };
+struct RobotOptions {
+  std::string file{};  ///< robot.yaml, hand.yaml or URDF
+  std::uint64_t seed = 1;
+  int samples = 1000;
+  std::vector<std::filesystem::path> packages{};  ///< folders searched for package://NAME, of a URDF
+  bool skeleton = false;
+  bool propose_contacts = false;
+  bool allowed_collisions = false;
+  std::filesystem::path picture{};  ///< SVG to write; empty: none
+};
 struct DemoOptions {
   std::filesystem::path out = "demo";
   std::uint64_t seed = 1;
@@ -155,6 +165,7 @@ int repair(const RepairOptions& options, const Console& console);
 int stale(const StaleOptions& options, const Console& console);
 int check(const CheckOptions& options, const Console& console);
 int mesh(const MeshOptions& options, const Console& console);
+int robot(const RobotOptions& options, const Console& console);
 int demo(const DemoOptions& options, const Console& console);
 
 }  // namespace opponens::cli

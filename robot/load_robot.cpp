@@ -7,18 +7,12 @@
 
 #include "core/require.hpp"
 #include "robot/hand_file.hpp"
+#include "robot/link_pairs.hpp"
 #include "robot/mesh.hpp"
 
 namespace opponens::robot {
 
 namespace {
-
-std::optional<int> find_link(const RobotDescription& description, const std::string& name) {
-  for (std::size_t i = 0; i < description.links.size(); ++i) {
-    if (description.links[i].name == name) return static_cast<int>(i);
-  }
-  return std::nullopt;
-}
 
 int require_link(const RobotDescription& description, const NamedValue& link) {
   const std::optional<int> index = find_link(description, link.name);
@@ -61,6 +55,9 @@ RobotDescription subtree(const RobotDescription& whole, int root) {
     part.links.back().joint = static_cast<int>(part.joints.size());
     part.joints.push_back(std::move(joint));
   }
+  for (const MissingMesh& missing : whole.missing_meshes) {
+    if (find_link(part, missing.link)) part.missing_meshes.push_back(missing);
+  }
   const std::size_t dropped = whole.links.size() - part.links.size();
   if (dropped > 0) {
     part.notes.push_back(std::to_string(dropped) + " links that are not below '" + part.links[0].name + "' left out");
@@ -88,11 +85,14 @@ void attach(RobotDescription& robot, const RobotDescription& hand, int parent, c
     robot.joints.push_back(std::move(joint));
   }
   for (Link link : hand.links) {
-    if (find_link(robot, link.name)) where.fail("arm and hand both have a link '" + link.name + "'");
+    if (find_link(robot, link.name)) {
+      where.fail("arm and hand both have a link '" + link.name + "'; the key arm.link_prefix tells them apart");
+    }
     link.joint = link.joint < 0 ? joint_offset - 1 : link.joint + joint_offset;
     robot.links.push_back(std::move(link));
   }
   robot.notes.insert(robot.notes.end(), hand.notes.begin(), hand.notes.end());
+  robot.missing_meshes.insert(robot.missing_meshes.end(), hand.missing_meshes.begin(), hand.missing_meshes.end());
 }
 
 /// A part between flange and palm (key mount.support): a cylinder along z, fixed to the mount's parent.
@@ -104,31 +104,6 @@ void attach_support(RobotDescription& robot, int parent, const YamlValue& suppor
   part.links.push_back({support.at("name").text(), -1, {{cylinder, support.pose()}}});
   attach(robot, part, parent, Eigen::Isometry3d::Identity(), support);
   robot.joints.back().name = "mount_" + part.links[0].name;
-}
-
-/// Index of the rigid body (links joined by fixed joints) that each link belongs to.
-std::vector<int> rigid_bodies(const RobotDescription& description) {
-  std::vector<int> body(description.links.size(), 0);
-  for (std::size_t i = 0; i < description.joints.size(); ++i) {
-    const Joint& joint = description.joints[i];
-    const auto child = static_cast<std::size_t>(joint.child);
-    body[child] = joint.type == JointType::fixed ? body[static_cast<std::size_t>(joint.parent)] : joint.child;
-  }
-  return body;
-}
-
-/// Links of one rigid body never move against each other, and the two links of a joint are built to touch.
-void allow_adjacent(RobotDescription& description) {
-  for (const Joint& joint : description.joints) description.allowed_collisions.emplace(joint.parent, joint.child);
-  const std::vector<int> body = rigid_bodies(description);
-  const int links = static_cast<int>(description.links.size());
-  for (int a = 0; a < links; ++a) {
-    for (int b = a + 1; b < links; ++b) {
-      if (body[static_cast<std::size_t>(a)] == body[static_cast<std::size_t>(b)]) {
-        description.allowed_collisions.emplace(a, b);
-      }
-    }
-  }
 }
 
 void allow_pairs(RobotDescription& description, const std::vector<std::pair<NamedValue, NamedValue>>& pairs) {
@@ -159,6 +134,7 @@ void fill_hand(RobotDescription& description, const HandFile& hand) {
   description.contact_points = resolve(description, hand.contact_points);
   allow_adjacent(description);
   allow_pairs(description, hand.allowed_collisions);
+  if (hand.srdf) apply_srdf(read_srdf(*hand.srdf), description);
 }
 
 Eigen::VectorXd read_weights(const YamlValue& file, const RobotDescription& description) {
@@ -201,9 +177,26 @@ RobotDescription load_joined(const RobotFile& robot, const std::filesystem::path
   return description;
 }
 
+/// Key arm.link_prefix, put before the names of the arm's links: arm and hand often both have a 'base_link'. Names in
+/// robot.yaml carry it, so the URDF is asked to leave out the shapes of its own names.
+RobotDescription load_arm_urdf(const RobotFile& robot, const std::filesystem::path& urdf) {
+  const std::optional<YamlValue> prefix = robot.arm.find("link_prefix");
+  if (!prefix) return read_urdf(urdf, robot.settings);
+  const std::string text = prefix->text();
+  UrdfSettings settings = robot.settings;
+  settings.without_geometry.clear();
+  for (const std::string& name : robot.settings.without_geometry) {
+    if (name.starts_with(text)) settings.without_geometry.insert(name.substr(text.size()));
+  }
+  RobotDescription description = read_urdf(urdf, settings);
+  for (Link& link : description.links) link.name = text + link.name;
+  for (MissingMesh& missing : description.missing_meshes) missing.link = text + missing.link;
+  return description;
+}
+
 RobotDescription load_mounted(const RobotFile& robot, const std::filesystem::path& urdf, const YamlValue& mount) {
   mount.allow_keys({"parent", "xyz", "rpy", "support"});
-  RobotDescription description = read_urdf(urdf, robot.settings);
+  RobotDescription description = load_arm_urdf(robot, urdf);
   const NamedValue parent_name = {mount.at("parent").text(), mount.at("parent")};
   const int parent = require_link(description, parent_name);
   description.arm_tip_link = parent_name.name;
@@ -216,7 +209,8 @@ RobotDescription load_mounted(const RobotFile& robot, const std::filesystem::pat
   return description;
 }
 
-void add_mesh_files(RobotDescription& description) {
+void add_files_inside(RobotDescription& description) {
+  for (const Srdf& srdf : description.semantics) description.files.push_back(srdf.file);
   for (const Link& link : description.links) append_mesh_files(link.collision, description.files);
 }
 
@@ -230,9 +224,11 @@ void name_arm(const YamlValue& file, const YamlValue& arm, RobotDescription& des
 }
 
 /// A robot.yaml without the key hand.
-RobotDescription load_arm(const std::filesystem::path& robot_yaml, const YamlValue& file, const YamlValue& arm) {
+RobotDescription load_arm_alone(const std::filesystem::path& robot_yaml, const YamlValue& file, const YamlValue& arm,
+                                MissingMeshes missing) {
   if (const auto mount = file.find("mount")) mount->fail("mounts a hand, but there is no key 'hand'");
-  UrdfSettings settings{read_packages(arm), read_link_geometry(file), {}};
+  if (const auto prefix = arm.find("link_prefix")) prefix->fail("is for an arm and a hand in two files");
+  UrdfSettings settings{read_packages(arm), read_link_geometry(file), {}, missing};
   const std::vector<NamedValue> without_geometry = read_without_geometry(file, settings);
   const std::filesystem::path urdf = arm.at("urdf").path();
   RobotDescription description = read_urdf(urdf, settings);
@@ -240,9 +236,10 @@ RobotDescription load_arm(const std::filesystem::path& robot_yaml, const YamlVal
   name_arm(file, arm, description);
   allow_adjacent(description);
   allow_pairs(description, read_pairs(file));
+  if (const auto srdf = read_srdf_path(file)) apply_srdf(read_srdf(*srdf), description);
   description.weights = read_weights(file, description);
   description.files = {robot_yaml, urdf};
-  add_mesh_files(description);
+  add_files_inside(description);
   return description;
 }
 
@@ -254,18 +251,24 @@ bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
 }  // namespace
 
 RobotDescription load_hand(const std::filesystem::path& hand_yaml) {
-  return load_hand(hand_yaml, read_hand_file(hand_yaml).urdf.path());
+  return load_hand(hand_yaml, MissingMeshes::refuse);
 }
 
-RobotDescription load_hand(const std::filesystem::path& hand_yaml, const std::filesystem::path& urdf) {
-  const HandFile hand = read_hand_file(hand_yaml);
+RobotDescription load_hand(const std::filesystem::path& hand_yaml, MissingMeshes missing) {
+  return load_hand(hand_yaml, read_hand_file(hand_yaml).urdf.path(), missing);
+}
+
+RobotDescription load_hand(const std::filesystem::path& hand_yaml, const std::filesystem::path& urdf,
+                           MissingMeshes missing) {
+  HandFile hand = read_hand_file(hand_yaml);
+  hand.urdf_settings.missing_meshes = missing;
   const RobotDescription whole = read_urdf(urdf, hand.urdf_settings);
   require_links(hand.without_geometry, whole, whole);
   RobotDescription description = subtree(whole, require_link(whole, hand.palm_link));
   fill_hand(description, hand);
   description.weights = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(description.hand_joints.size()));
   description.files = {hand_yaml, urdf};
-  add_mesh_files(description);
+  add_files_inside(description);
   return description;
 }
 
@@ -291,18 +294,25 @@ RobotDescription hand_of(const RobotDescription& robot) {
 }
 
 RobotDescription load_robot(const std::filesystem::path& robot_yaml) {
+  return load_robot(robot_yaml, MissingMeshes::refuse);
+}
+
+RobotDescription load_robot(const std::filesystem::path& robot_yaml, MissingMeshes missing) {
   const YamlValue file = YamlValue::load(robot_yaml);
-  file.allow_keys({"name", "arm", "hand", "mount", "collision", "without_geometry", "weights", "allowed_collisions"});
+  file.allow_keys(
+      {"name", "arm", "hand", "mount", "collision", "without_geometry", "weights", "allowed_collisions", "srdf"});
   const YamlValue arm = file.at("arm");
-  arm.allow_keys({"urdf", "packages", "joints"});
-  if (!file.has("hand")) return load_arm(robot_yaml, file, arm);
+  arm.allow_keys({"urdf", "packages", "joints", "link_prefix"});
+  if (!file.has("hand")) return load_arm_alone(robot_yaml, file, arm, missing);
   RobotFile robot{file, arm, read_hand_file(file.at("hand").path()), {}, {}};
-  robot.settings = {read_packages(arm), read_link_geometry(file), robot.hand.urdf_settings.without_geometry};
+  robot.settings = {read_packages(arm), read_link_geometry(file), robot.hand.urdf_settings.without_geometry, missing};
+  robot.hand.urdf_settings.missing_meshes = missing;
   robot.without_geometry = read_without_geometry(file, robot.settings);
   for (const NamedValue& link : robot.hand.without_geometry) robot.without_geometry.push_back(link);
   robot.hand.urdf_settings.without_geometry = robot.settings.without_geometry;
   const std::filesystem::path urdf = arm.at("urdf").path();
   const std::optional<YamlValue> mount = file.find("mount");
+  if (!mount && arm.has("link_prefix")) arm.at("link_prefix").fail("is for an arm and a hand in two files");
   if (!mount && !same_file(urdf, robot.hand.urdf.path())) {
     file.fail("needs a key 'mount', since arm.urdf and the hand's urdf are two files");
   }
@@ -316,10 +326,11 @@ RobotDescription load_robot(const std::filesystem::path& robot_yaml) {
     }
   }
   allow_pairs(description, read_pairs(file));
+  if (const auto srdf = read_srdf_path(file)) apply_srdf(read_srdf(*srdf), description);
   description.weights = read_weights(file, description);
   description.files = {robot_yaml, file.at("hand").path(), urdf};
   if (mount) description.files.push_back(robot.hand.urdf.path());
-  add_mesh_files(description);
+  add_files_inside(description);
   return description;
 }
 

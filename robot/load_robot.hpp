@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "robot/read_urdf.hpp"
 #include "robot/robot_model.hpp"
 
 namespace opponens::robot {
@@ -11,11 +12,20 @@ namespace opponens::robot {
 /// Reads a robot.yaml (arm URDF + hand.yaml + mount; docs/robot_files.md) with its URDFs and meshes.
 /// Throws InputError naming file, element, value and what was expected.
 RobotDescription load_robot(const std::filesystem::path& robot_yaml);
+/// The same, going on without meshes that are not there when asked to (they are listed in the description).
+RobotDescription load_robot(const std::filesystem::path& robot_yaml, MissingMeshes missing);
 
 /// Reads a hand.yaml alone: the tree below the palm link, which becomes the root (frame H).
 RobotDescription load_hand(const std::filesystem::path& hand_yaml);
+RobotDescription load_hand(const std::filesystem::path& hand_yaml, MissingMeshes missing);
 /// The same with another URDF in place of the one that the hand.yaml names.
-RobotDescription load_hand(const std::filesystem::path& hand_yaml, const std::filesystem::path& urdf);
+RobotDescription load_hand(const std::filesystem::path& hand_yaml, const std::filesystem::path& urdf,
+                           MissingMeshes missing = MissingMeshes::refuse);
+
+/// A URDF alone, understood without any YAML: the palm is where the fingers branch (robot/hand_outline.hpp), the
+/// joints above it that move are the arm's, those below the hand's. Where nothing branches, the tree is an arm and its
+/// last link stands for the palm. Notes say what was guessed.
+RobotDescription load_urdf(const std::filesystem::path& urdf, const UrdfSettings& settings);
 
 /// The hand of a robot: the tree below its palm link, which becomes the root (frame H).
 RobotDescription hand_of(const RobotDescription& robot);

@@ -14,6 +14,7 @@
 
 #include "core/path.hpp"
 #include "robot/geometry.hpp"
+#include "robot/srdf.hpp"
 
 namespace opponens::robot {
 
@@ -53,6 +54,13 @@ struct SurfacePoint {
   Eigen::Vector3d n_L;  ///< unit, out of the link's surface
 };
 
+/// A mesh that a URDF names and that is not there.
+struct MissingMesh {
+  std::string link;
+  std::string mesh;    ///< as the URDF writes it
+  std::string reason;  ///< "does not exist: /path", "package 'x' has no path", ...
+};
+
 /// A kinematic tree as loaded: links in topological order (root first), joints in the order of their child links.
 struct RobotDescription {
   std::string name;
@@ -68,6 +76,8 @@ struct RobotDescription {
   std::set<std::pair<int, int>> allowed_collisions;  ///< link index pairs (first < second) that may touch
   std::vector<std::filesystem::path> files;          ///< it was read from, meshes included
   std::vector<std::string> notes;                    ///< what was ignored or defaulted while loading
+  std::vector<MissingMesh> missing_meshes;           ///< only where loading was asked to go on without them
+  std::vector<Srdf> semantics;                       ///< the SRDFs read
 };
 
 /// The same robot with every length multiplied by factor > 0: joint frames, shapes, surface points, prismatic limits.
