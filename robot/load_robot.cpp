@@ -6,19 +6,15 @@
 #include <map>
 
 #include "core/require.hpp"
+#include "robot/arms_file.hpp"
 #include "robot/hand_file.hpp"
+#include "robot/link_pairs.hpp"
 #include "robot/mesh.hpp"
+#include "robot/tree.hpp"
 
 namespace opponens::robot {
 
 namespace {
-
-std::optional<int> find_link(const RobotDescription& description, const std::string& name) {
-  for (std::size_t i = 0; i < description.links.size(); ++i) {
-    if (description.links[i].name == name) return static_cast<int>(i);
-  }
-  return std::nullopt;
-}
 
 int require_link(const RobotDescription& description, const NamedValue& link) {
   const std::optional<int> index = find_link(description, link.name);
@@ -68,31 +64,18 @@ RobotDescription subtree(const RobotDescription& whole, int root) {
   return part;
 }
 
-/// Appends the hand's tree to a link of the arm. Both keep their topological order.
+/// Appends the hand's tree to a link of the arm.
 void attach(RobotDescription& robot, const RobotDescription& hand, int parent, const Eigen::Isometry3d& X_PH,
             const YamlValue& where) {
-  const int link_offset = static_cast<int>(robot.links.size());
-  const int joint_offset = static_cast<int>(robot.joints.size()) + 1;
-  Joint mount;
-  mount.name = "mount";
-  mount.parent = parent;
-  mount.child = link_offset;
-  mount.X_PJ = X_PH;
-  robot.joints.push_back(mount);
-  for (Joint joint : hand.joints) {
+  for (const Joint& joint : hand.joints) {
     const bool repeats = std::any_of(robot.joints.begin(), robot.joints.end(),
                                      [&](const Joint& other) { return other.name == joint.name; });
     if (repeats) where.fail("arm and hand both have a joint '" + joint.name + "'");
-    joint.parent += link_offset;
-    joint.child += link_offset;
-    robot.joints.push_back(std::move(joint));
   }
-  for (Link link : hand.links) {
+  for (const Link& link : hand.links) {
     if (find_link(robot, link.name)) where.fail("arm and hand both have a link '" + link.name + "'");
-    link.joint = link.joint < 0 ? joint_offset - 1 : link.joint + joint_offset;
-    robot.links.push_back(std::move(link));
   }
-  robot.notes.insert(robot.notes.end(), hand.notes.begin(), hand.notes.end());
+  append_tree(robot, hand, parent, X_PH, "mount");
 }
 
 /// A part between flange and palm (key mount.support): a cylinder along z, fixed to the mount's parent.
@@ -104,31 +87,6 @@ void attach_support(RobotDescription& robot, int parent, const YamlValue& suppor
   part.links.push_back({support.at("name").text(), -1, {{cylinder, support.pose()}}});
   attach(robot, part, parent, Eigen::Isometry3d::Identity(), support);
   robot.joints.back().name = "mount_" + part.links[0].name;
-}
-
-/// Index of the rigid body (links joined by fixed joints) that each link belongs to.
-std::vector<int> rigid_bodies(const RobotDescription& description) {
-  std::vector<int> body(description.links.size(), 0);
-  for (std::size_t i = 0; i < description.joints.size(); ++i) {
-    const Joint& joint = description.joints[i];
-    const auto child = static_cast<std::size_t>(joint.child);
-    body[child] = joint.type == JointType::fixed ? body[static_cast<std::size_t>(joint.parent)] : joint.child;
-  }
-  return body;
-}
-
-/// Links of one rigid body never move against each other, and the two links of a joint are built to touch.
-void allow_adjacent(RobotDescription& description) {
-  for (const Joint& joint : description.joints) description.allowed_collisions.emplace(joint.parent, joint.child);
-  const std::vector<int> body = rigid_bodies(description);
-  const int links = static_cast<int>(description.links.size());
-  for (int a = 0; a < links; ++a) {
-    for (int b = a + 1; b < links; ++b) {
-      if (body[static_cast<std::size_t>(a)] == body[static_cast<std::size_t>(b)]) {
-        description.allowed_collisions.emplace(a, b);
-      }
-    }
-  }
 }
 
 void allow_pairs(RobotDescription& description, const std::vector<std::pair<NamedValue, NamedValue>>& pairs) {
@@ -244,6 +202,7 @@ RobotDescription load_hand(const std::filesystem::path& hand_yaml, const std::fi
 }
 
 RobotDescription hand_of(const RobotDescription& robot) {
+  require(robot.driven_arms.size() < 2, "hand_of: q drives several arms of robot '" + robot.name + "'");
   const auto index = [](const RobotDescription& tree, const std::string& name) { return *find_link(tree, name); };
   RobotDescription hand = subtree(robot, index(robot, robot.palm_link));
   const auto name = [&](int link) { return robot.links[static_cast<std::size_t>(link)].name; };
@@ -261,16 +220,25 @@ RobotDescription hand_of(const RobotDescription& robot) {
   }
   hand.weights = robot.weights.tail(static_cast<Eigen::Index>(robot.hand_joints.size()));
   hand.files = robot.files;
+  if (!robot.driven_arms.empty()) remove_joint_prefix(hand, robot.driven_arms[0]);
   return hand;
 }
 
-RobotDescription load_robot(const std::filesystem::path& robot_yaml) {
+RobotDescription load_robot(const std::filesystem::path& robot_yaml) { return load_robot(robot_yaml, ""); }
+
+RobotDescription load_robot(const std::filesystem::path& robot_yaml, const std::string& group) {
   const YamlValue file = YamlValue::load(robot_yaml);
+  if (file.has("arms")) return load_arms(file, group);
+  if (!group.empty()) file.fail("has one arm and no key 'arms', so there is no arm '" + group + "' to choose");
   file.allow_keys({"name", "arm", "hand", "mount", "collision", "without_geometry", "weights", "allowed_collisions"});
+  return load_arm(file, read_link_geometry(file));
+}
+
+RobotDescription load_arm(const YamlValue& file, LinkGeometry geometry) {
   const YamlValue arm = file.at("arm");
   arm.allow_keys({"urdf", "packages", "joints"});
   RobotFile robot{file, arm, read_hand_file(file.at("hand").path()), {}, {}};
-  robot.settings = {read_packages(arm), read_link_geometry(file), robot.hand.urdf_settings.without_geometry};
+  robot.settings = {read_packages(arm), geometry, robot.hand.urdf_settings.without_geometry};
   robot.without_geometry = read_without_geometry(file, robot.settings);
   for (const NamedValue& link : robot.hand.without_geometry) robot.without_geometry.push_back(link);
   robot.hand.urdf_settings.without_geometry = robot.settings.without_geometry;
@@ -295,7 +263,7 @@ RobotDescription load_robot(const std::filesystem::path& robot_yaml) {
   }
   allow_pairs(description, read_pairs(file));
   description.weights = read_weights(file, description);
-  description.files = {robot_yaml, file.at("hand").path(), urdf};
+  description.files = {file.file(), file.at("hand").path(), urdf};
   if (mount) description.files.push_back(robot.hand.urdf.path());
   add_mesh_files(description);
   return description;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "robot/robot_model.hpp"
 
@@ -11,13 +12,18 @@ namespace opponens::robot {
 /// Reads a robot.yaml (arm URDF + hand.yaml + mount; docs/robot_files.md) with its URDFs and meshes.
 /// Throws InputError naming file, element, value and what was expected.
 RobotDescription load_robot(const std::filesystem::path& robot_yaml);
+/// The same, of a file with several arms, with the arm that q drives, or "both" of two; empty: the file's default. The
+/// other arms stand at their rest positions (drive_arms of robot/robot_arms.hpp chooses again without reading).
+RobotDescription load_robot(const std::filesystem::path& robot_yaml, const std::string& group);
 
 /// Reads a hand.yaml alone: the tree below the palm link, which becomes the root (frame H).
 RobotDescription load_hand(const std::filesystem::path& hand_yaml);
 /// The same with another URDF in place of the one that the hand.yaml names.
 RobotDescription load_hand(const std::filesystem::path& hand_yaml, const std::filesystem::path& urdf);
 
-/// The hand of a robot: the tree below its palm link, which becomes the root (frame H).
+/// The hand of a robot: the tree below its palm link, which becomes the root (frame H). Of a robot with several arms:
+/// the hand of the one that q drives; its joints have the names of its hand.yaml, as the synergies of that hand do, its
+/// links those of the robot, as contacts name them. Throws std::invalid_argument when q drives several arms.
 RobotDescription hand_of(const RobotDescription& robot);
 
 }  // namespace opponens::robot
