@@ -64,7 +64,7 @@ TEST_F(AttachedBody, HeldBottleHitsAShelfButNotTheFingersThatHoldIt) {
   const RobotModel careless(attach_body(robot_, bottle_, "palm_link", X_HB_, {}));
   EXPECT_EQ(CollisionChecker(careless, emptied).colliding_pairs(q_).size(), grip.size()) << "no finger was allowed";
 
-  for (const double gap : {0.002, -0.002}) {
+  for (const double gap : {0.001, -0.001}) {
     Scene shelved = emptied;
     shelved.bodies.push_back(shelf(gap));
     EXPECT_TRUE(CollisionChecker(RobotModel(robot_), shelved).free(q_)) << "the hand itself does not reach the shelf";
