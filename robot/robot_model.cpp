@@ -141,8 +141,8 @@ void RobotModel::index_arms() {
     first_hand += arms_.back().hand.count;
   }
   for (const PlanningGroup& group : groups()) {
-    const auto end = joint_names_.begin() + std::min(group.first + group.count, dof());
-    require(std::equal(group.joint_names.begin(), group.joint_names.end(), joint_names_.begin() + group.first, end),
+    require(group.first + group.count <= dof() &&
+                std::equal(group.joint_names.begin(), group.joint_names.end(), joint_names_.begin() + group.first),
             "the joints of group '" + group.name + "' are not where q holds them");
   }
 }

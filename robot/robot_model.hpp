@@ -36,7 +36,8 @@ struct Joint {
   double upper = 0.0;                                      ///< rad or m
   double velocity = 0.0;                                   ///< rad/s or m/s, limit
   std::optional<Mimic> mimic;
-  std::optional<double> rest;  ///< rad or m, position while q does not drive it; default: the limit nearest to zero
+  std::optional<double>
+      rest;  ///< rad or m, position while q does not drive it; default: zero, or the limit nearest to it
 };
 
 struct Link {
