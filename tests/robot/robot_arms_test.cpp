@@ -14,6 +14,7 @@
 #include "robot/collision.hpp"
 #include "robot/inverse_kinematics.hpp"
 #include "robot/load_robot.hpp"
+#include "robot/scene.hpp"
 #include "robot_test.hpp"
 
 namespace opponens::robot {
@@ -250,6 +251,22 @@ TEST(RobotArms, NoPairAlwaysCollides) {
     for (const BodyPair& pair : checker.colliding_pairs(random_configuration(both, rng))) ++count[pair];
   }
   for (const auto& [pair, times] : count) EXPECT_LT(times, samples / 2) << pair.first << " " << pair.second;
+}
+
+/// Either arm, or both, can start from the scene's configuration.
+TEST(RobotArms, BookshelfSceneIsForBoth) {
+  const Scene scene = load_scene(ours("scenes/dual_bookshelf.yaml"));
+  const RobotModel both(drive_arms(dual(), "both"));
+  Eigen::VectorXd q(both.dof());
+  for (int i = 0; i < both.dof(); ++i) {
+    const auto found = std::find(scene.start_joints.begin(), scene.start_joints.end(),
+                                 both.joint_names()[static_cast<std::size_t>(i)]);
+    ASSERT_NE(found, scene.start_joints.end()) << both.joint_names()[static_cast<std::size_t>(i)];
+    q[i] = scene.start[found - scene.start_joints.begin()];
+  }
+  EXPECT_TRUE(both.within_limits(q));
+  EXPECT_TRUE(CollisionChecker(both, scene).free(q));
+  EXPECT_EQ(q.head(12), both.rest().head(12)) << "what is not driven stands where it would start";
 }
 
 /// The hand of a driven arm has its hand.yaml's joint names, so that synergies fit it, and the robot's links.
