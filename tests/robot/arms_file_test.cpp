@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The opponens authors
 // SPDX-License-Identifier: BSD-3-Clause
 // robot.yaml with the key `arms`: what it means, and what is refused in one line.
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
