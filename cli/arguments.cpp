@@ -52,7 +52,8 @@ void add_threads(CLI::App& app, int& threads) {
 
 template <typename Options>
 void add_world(CLI::App& app, Options& options) {
-  app.add_option("--robot", options.robot, "robot.yaml")->capture_default_str();
+  app.add_option("--robot", options.robot, "robot.yaml; FILE#ARM: an arm of a robot with several")
+      ->capture_default_str();
   app.add_option("--scene", options.scene, "Scene YAML")->capture_default_str();
   app.add_option("--object", options.object, "Body of the scene to grasp; default: the one the scene names");
 }

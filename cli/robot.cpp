@@ -11,7 +11,7 @@
 namespace opponens::cli {
 namespace {
 
-void check(const RobotOptions& options, const NamedRobot& robot) {
+void check(const RobotOptions& options, const LoadedRobot& robot) {
   if (options.skeleton && robot.kind != RobotFileKind::urdf) {
     throw InputError("--skeleton starts from a URDF; " + robot.file.string() + " is a YAML file already");
   }
@@ -49,7 +49,7 @@ void write_picture(const std::filesystem::path& path, const RobotFacts& facts) {
 }  // namespace
 
 int robot(const RobotOptions& options, const Console& console) {
-  RobotFacts facts{load_named_robot(options.file, options.packages), options.seed};
+  RobotFacts facts{load_any_robot(options.file, options.packages), options.seed};
   check(options, facts.robot);
   const auto& description = facts.robot.model.description();
   if (options.skeleton || options.propose_contacts) facts.proposal = robot::propose_contacts(facts.robot.model);

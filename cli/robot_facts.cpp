@@ -178,17 +178,21 @@ Json self_collision_json(const RobotFacts& facts) {
 
 }  // namespace
 
-NamedRobot load_named_robot(const std::string& file, const std::vector<fs::path>& packages) {
-  const fs::path found = find_file(file);
+LoadedRobot load_any_robot(const std::string& file, const std::vector<fs::path>& packages) {
+  const NamedRobot named = named_robot(file);
+  const fs::path& found = named.file;
   const RobotFileKind kind = kind_of(found);
   if (!packages.empty() && kind != RobotFileKind::urdf) {
     throw InputError("--packages is for a URDF; " + found.string() + " names its own (key packages)");
+  }
+  if (!named.arm.empty() && kind != RobotFileKind::robot_yaml) {
+    throw InputError("'#" + named.arm + "' chooses an arm of a robot.yaml; " + found.string() + " is none");
   }
   robot::UrdfSettings settings;
   settings.packages.roots = packages;
   settings.missing_meshes = robot::MissingMeshes::list;
   robot::RobotDescription description =
-      kind == RobotFileKind::robot_yaml  ? robot::load_robot(found, settings.missing_meshes)
+      kind == RobotFileKind::robot_yaml  ? robot::load_robot(found, named.arm, settings.missing_meshes)
       : kind == RobotFileKind::hand_yaml ? robot::load_hand(found, settings.missing_meshes)
                                          : load_urdf(found, settings);
   return {kind, found, settings, robot::RobotModel(std::move(description))};

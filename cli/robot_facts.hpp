@@ -19,7 +19,7 @@ namespace opponens::cli {
 enum class RobotFileKind { robot_yaml, hand_yaml, urdf };
 
 /// A robot as `opponens robot` loads it: going on without missing meshes.
-struct NamedRobot {
+struct LoadedRobot {
   RobotFileKind kind;
   std::filesystem::path file;
   robot::UrdfSettings settings;  ///< how the URDF was read; of a URDF alone
@@ -28,7 +28,7 @@ struct NamedRobot {
 
 /// Loads whichever of the three the file is. packages: folders searched for package://NAME; only with a URDF (the YAML
 /// files name their own). The visual shapes stand in where a URDF alone has no collision shapes. Throws InputError.
-NamedRobot load_named_robot(const std::string& file, const std::vector<std::filesystem::path>& packages);
+LoadedRobot load_any_robot(const std::string& file, const std::vector<std::filesystem::path>& packages);
 
 /// What a link's surface is made of.
 struct LinkSurface {
@@ -40,7 +40,7 @@ LinkSurface surface_of(const robot::Link& link);
 
 /// Everything that is said about a robot.
 struct RobotFacts {
-  NamedRobot robot;
+  LoadedRobot robot;
   std::uint64_t seed = 1;
   std::optional<robot::SelfCollisionSamples> samples{};  ///< none drawn with --samples 0
   robot::AllowedSuggestion suggestion{};

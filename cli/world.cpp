@@ -22,9 +22,14 @@ robot::RobotDescription hand_of_motion(const storage::Record& record) {
 }
 
 NamedWorld load_world(const std::string& robot_file, const std::string& scene_file, const std::string& object) {
-  const auto robot_path = find_file(robot_file);
+  NamedRobot named = named_robot(robot_file);
   const auto scene_path = find_file(scene_file);
-  robot::RobotDescription description = robot::load_robot(robot_path);
+  robot::RobotDescription description = robot::load_robot(named.file, named.arm);
+  if (description.driven_arms.size() > 1) {
+    throw InputError("--robot " + robot_file + ": one arm grasps and moves; name it: " + named.file.string() + "#" +
+                     description.driven_arms[0] + " or #" + description.driven_arms[1]);
+  }
+  if (!description.driven_arms.empty()) named.arm = description.driven_arms[0];
   if (description.hand_joints.empty()) throw InputError(robot_file + ": is an arm without a hand: nothing can grasp");
   robot::RobotDescription hand = robot::hand_of(description);
   robot::Scene scene = robot::load_scene(scene_path);
@@ -39,7 +44,7 @@ NamedWorld load_world(const std::string& robot_file, const std::string& scene_fi
           robot::RobotModel(std::move(hand)),
           std::move(scene),
           name,
-          world_parameters(robot_file, scene_file, name),
+          world_parameters(named, scene_file, name),
           std::move(files)};
 }
 
@@ -50,7 +55,7 @@ std::vector<std::string> NamedWorld::hand_links() const {
 }
 
 WorldKey NamedWorld::key() const {
-  WorldKey key{object, {}};
+  WorldKey key{object, recorded_arm(parameters.at("robot")), {}};
   for (const auto& file : files) key.files.insert(file_sha256(file));
   return key;
 }
