@@ -96,6 +96,9 @@ class RobotModel {
   int link_index(const std::string& name) const;                           ///< throws std::invalid_argument when absent
   int palm() const { return palm_; }
 
+  /// [joints] rad or m, positions of all joints in the description's order: driven and resting ones too, 0 if fixed.
+  Eigen::VectorXd joint_positions(const Eigen::Ref<const Eigen::VectorXd>& q) const;
+
   /// Poses X_RL of every link in the root frame R. Cost: one product per link. q: [d] rad.
   std::vector<Eigen::Isometry3d> link_poses(const Eigen::Ref<const Eigen::VectorXd>& q) const;
   /// The same, reusing the output's memory.
