@@ -12,19 +12,26 @@
 namespace opponens::verify {
 
 double triangle_distance(const Eigen::Matrix3d& corners, const Eigen::Vector3d& p) {
-  const Eigen::Vector3d n = (corners.col(1) - corners.col(0)).cross(Eigen::Vector3d(corners.col(2) - corners.col(0)));
-  bool over = n.squaredNorm() > 0.0;
+  const Eigen::Vector3d ab = corners.col(1) - corners.col(0);
+  const Eigen::Vector3d ac = corners.col(2) - corners.col(0);
+  const Eigen::Vector3d ap = p - corners.col(0);
+  const Eigen::Vector3d n = ab.cross(ac);
+  const double area = n.squaredNorm();
+  // Over the face when both barycentric coordinates of the foot, and what they leave, are not negative.
+  const double v = ap.cross(ac).dot(n);
+  const double w = ab.cross(ap).dot(n);
+  // A needle's normal is rounding; its edges are as near as makes no difference.
+  const bool face = area > 1e-14 * ab.squaredNorm() * ac.squaredNorm();
+  if (face && v >= 0.0 && w >= 0.0 && v + w <= area) return std::abs(n.dot(ap)) / std::sqrt(area);
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 3; ++i) {
     const Eigen::Vector3d a = corners.col(i);
     const Eigen::Vector3d edge = corners.col((i + 1) % 3) - a;
-    if (n.cross(edge).dot(p - a) < 0.0) over = false;
     const double length = edge.squaredNorm();
     const double along = length > 0.0 ? std::clamp(edge.dot(p - a) / length, 0.0, 1.0) : 0.0;
     least = std::min(least, (p - a - along * edge).squaredNorm());
   }
-  least = std::sqrt(least);
-  return over ? std::min(least, std::abs(n.dot(p - corners.col(0))) / n.norm()) : least;
+  return std::sqrt(least);
 }
 
 BallTree::BallTree(const robot::TriangleMesh& mesh)

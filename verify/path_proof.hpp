@@ -19,11 +19,11 @@
 namespace opponens::verify {
 
 struct ProofSettings {
-  double clearance = 0.0005;        ///< m, that every pair has to keep
-  double max_penetration = 0.001;   ///< m, of the contacts while closing
-  double resolution = 1e-6;         ///< m, of relative motion: shorter pieces are not divided any more
-  double relative_gap = 0.1;        ///< the proven clearance is at least 1 - this of the worst that was found
-  double penetration_gap = 0.0001;  ///< m, by which the proven penetration may exceed the deepest that was found
+  double clearance = 0.0005;         ///< m, that every pair has to keep
+  double max_penetration = 0.001;    ///< m, of the contacts while closing
+  double resolution = 1e-6;          ///< m, of relative motion: shorter pieces are not divided any more
+  double relative_gap = 0.1;         ///< the proven clearance is at least 1 - this of the worst that was found
+  double penetration_gap = 0.00025;  ///< m, by which the proven penetration may exceed the deepest that was found
 };
 
 /// A place on a path: on the segment from waypoint - 1 to waypoint.

@@ -107,6 +107,7 @@ void judge(const PathProof& proof, const ProofSettings& settings, Verdict& verdi
     }
   }
   verdict.checked = proof.configurations();
+  verdict.distances = proof.distances();
   verdict.ok = verdict.ok && reasons.empty();
   if (reasons.size() > kReportedPairs) reasons.resize(kReportedPairs);
   for (std::string& reason : reasons) verdict.reasons.push_back(std::move(reason));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <queue>
 
 namespace opponens::verify {
 namespace {
@@ -19,77 +20,99 @@ struct Probe {
   double depth() const { return inside ? distance : -distance; }
 };
 
+/// A ball of A's tree, or a part of a triangle in its leaves.
+struct Piece {
+  double upper;             ///< m, no point of it is deeper
+  Probe at;                 ///< its middle
+  int ball;                 ///< -1: a part of a triangle
+  Eigen::Matrix3d corners;  ///< of that part, in B's frame
+
+  bool operator<(const Piece& other) const { return upper < other.upper; }
+};
+
 class Search {
  public:
-  Search(const Solid& A, const Solid& B, const Eigen::Isometry3d& X_BA, double enough)
-      : A_(A), B_(B), X_BA_(X_BA), enough_(enough) {}
+  Search(const Solid& A, const Solid& B, const Eigen::Isometry3d& X_BA) : A_(A), B_(B), X_BA_(X_BA) {}
 
-  Depth run() {
-    const Probe nowhere{Eigen::Vector3d::Zero(), 0.0, false};
-    if (B_.closed() && !A_.tree().balls().empty()) visit(0, nowhere);
-    return {attained_, std::max(bound_, attained_)};
+  /// The pieces that may hold the deepest point first.
+  Depth run(double enough) {
+    if (!B_.closed() || A_.tree().balls().empty()) return {0.0, 0.0};
+    const Eigen::Vector3d start = X_BA_ * A_.tree().balls()[0].center;
+    push_ball(0, {start, B_.distance(start), B_.inside(start)});
+    while (!open_.empty()) {
+      const Piece piece = open_.top();
+      if (piece.upper <= std::max(attained_ + kTolerance, enough)) break;
+      open_.pop();
+      if (piece.ball < 0) {
+        divide(piece);
+      } else {
+        unfold(piece);
+      }
+    }
+    return {attained_, std::max(attained_, open_.empty() ? 0.0 : open_.top().upper)};
   }
 
  private:
   Probe probe(const Eigen::Vector3d& p, const Probe& near) const {
-    const double distance = B_.distance(p);
-    const bool known = (p - near.p).norm() < near.distance;
-    return {p, distance, known ? near.inside : B_.inside(p)};
+    const double apart = (p - near.p).norm();
+    // From a probe near by follow a limit for the search in the tree, and often the side.
+    const double distance = B_.distance(p, near.distance + apart + 1e-9);
+    return {p, distance, apart < near.distance ? near.inside : B_.inside(p)};
   }
 
-  /// Whether nothing within `radius` of the probe is of interest. What is left out counts for the bound.
-  bool done(const Probe& at, double radius) {
-    const double deepest = at.depth() + radius;
-    if (deepest > 0.0 && deepest > std::max(attained_ + kTolerance, enough_)) return false;
-    bound_ = std::max(bound_, deepest);
-    return true;
+  /// Pieces that lie outside as a whole are of no interest.
+  void push(const Probe& at, double radius, int ball, const Eigen::Matrix3d& corners) {
+    if (at.depth() + radius > 0.0) open_.push({at.depth() + radius, at, ball, corners});
   }
 
-  void visit(int index, const Probe& above) {
+  void push_ball(int index, const Probe& near) {
     const BallTree::Ball& ball = A_.tree().balls()[static_cast<std::size_t>(index)];
-    const Probe at = probe(X_BA_ * ball.center, above);
-    if (done(at, ball.radius)) return;
-    if (ball.leaf) {
-      for (int i = ball.begin; i < ball.end; ++i) {
-        const Eigen::Matrix3d corners = A_.tree().corners(A_.tree().order()[static_cast<std::size_t>(i)]);
-        divide((X_BA_.linear() * corners).colwise() + X_BA_.translation(), at);
-      }
+    push(probe(X_BA_ * ball.center, near), ball.radius, index, Eigen::Matrix3d::Zero());
+  }
+
+  void push_triangle(const Eigen::Matrix3d& corners, const Probe& near) {
+    const Eigen::Vector3d middle = corners.rowwise().mean();
+    const Probe at = probe(middle, near);
+    attained_ = std::max(attained_, at.depth());
+    push(at, (corners.colwise() - middle).colwise().norm().maxCoeff(), -1, corners);
+  }
+
+  void unfold(const Piece& piece) {
+    const BallTree::Ball& ball = A_.tree().balls()[static_cast<std::size_t>(piece.ball)];
+    if (!ball.leaf) {
+      push_ball(piece.ball + 1, piece.at);
+      push_ball(A_.tree().balls()[static_cast<std::size_t>(piece.ball) + 1].next, piece.at);
       return;
     }
-    visit(index + 1, at);
-    visit(A_.tree().balls()[static_cast<std::size_t>(index) + 1].next, at);
+    for (int i = ball.begin; i < ball.end; ++i) {
+      const Eigen::Matrix3d corners = A_.tree().corners(A_.tree().order()[static_cast<std::size_t>(i)]);
+      push_triangle((X_BA_.linear() * corners).colwise() + X_BA_.translation(), piece.at);
+    }
   }
 
-  /// corners: of a part of a triangle of A, in B's frame.
-  void divide(const Eigen::Matrix3d& corners, const Probe& above) {
-    const Eigen::Vector3d middle = corners.rowwise().mean();
-    const double radius = (corners.colwise() - middle).colwise().norm().maxCoeff();
-    const Probe at = probe(middle, above);
-    attained_ = std::max(attained_, at.depth());
-    if (done(at, radius)) return;
-    // A radius of the tolerance always ends above, so triangles are divided finitely often.
+  /// Into quarters, so that a triangle ends at the latest when its radius is the tolerance.
+  void divide(const Piece& piece) {
     Eigen::Matrix3d halves;
-    for (int i = 0; i < 3; ++i) halves.col(i) = 0.5 * (corners.col((i + 1) % 3) + corners.col((i + 2) % 3));
-    divide(halves, at);
+    for (int i = 0; i < 3; ++i) halves.col(i) = 0.5 * (piece.corners.col((i + 1) % 3) + piece.corners.col((i + 2) % 3));
+    push_triangle(halves, piece.at);
     for (int i = 0; i < 3; ++i) {
       Eigen::Matrix3d corner = halves;
-      corner.col(i) = corners.col(i);
-      divide(corner, at);
+      corner.col(i) = piece.corners.col(i);
+      push_triangle(corner, piece.at);
     }
   }
 
   const Solid& A_;
   const Solid& B_;
   const Eigen::Isometry3d& X_BA_;
-  double enough_;
+  std::priority_queue<Piece> open_;
   double attained_ = 0.0;
-  double bound_ = 0.0;
 };
 
 }  // namespace
 
 Depth penetration(const Solid& A, const Solid& B, const Eigen::Isometry3d& X_BA, double enough) {
-  return Search(A, B, X_BA, enough).run();
+  return Search(A, B, X_BA).run(enough);
 }
 
 }  // namespace opponens::verify

@@ -51,7 +51,9 @@ robot::TriangleMesh circumscribed(const robot::Shape& shape, double tolerance) {
   if (sphere == nullptr && cylinder == nullptr) return robot::triangulate(shape);
   const double radius = sphere != nullptr ? sphere->radius : cylinder->radius;
   constexpr int kMostSegments = 512;
-  for (int segments = 16;; segments += segments / 4) {
+  // 1 - cos(pi / n) of the radius is missing around, and about as much again along a sphere's meridians.
+  const double estimate = std::numbers::pi * std::sqrt(radius / tolerance * (sphere != nullptr ? 1.0 : 0.5));
+  for (int segments = std::clamp(static_cast<int>(estimate), 16, kMostSegments);; segments += 2) {
     robot::TriangleMesh mesh = robot::triangulate(shape, segments);
     // Two parts in 1e12 for what rounding takes away.
     const double factor = radius / inner_radius(mesh, sphere == nullptr) * (1.0 + 2e-12);

@@ -21,6 +21,7 @@ struct Verdict {
   std::string worst_place;                                            ///< where that is on the path
   double worst_contact_penetration = 0.0;   ///< m, deepest contact found on the closing segment
   double proven_contact_penetration = 0.0;  ///< m, no contact is deeper anywhere on it
+  std::int64_t distances = 0;               ///< distances of two bodies asked for, beyond bounding volumes
   std::int64_t checked = 0;                 ///< paths: configurations evaluated; grasps: wrenches
 
   void fail(std::string reason) {

@@ -112,7 +112,8 @@ Travelled sampled(const RobotModel& robot, const std::vector<Eigen::Matrix3Xd>& 
     for (Eigen::Index a = 0; a < links; ++a) {
       for (Eigen::Index b = 0; b < links; ++b) {
         const auto& p = at[static_cast<std::size_t>(a)];
-        const double d = (p.col(0) - at[static_cast<std::size_t>(b)].col(p.cols() % 2)).norm();
+        const auto& other = at[static_cast<std::size_t>(b)];
+        const double d = (p.col(0) - other.col(other.cols() - 1)).norm();
         least(a, b) = std::min(least(a, b), d);
         most(a, b) = std::max(most(a, b), d);
       }

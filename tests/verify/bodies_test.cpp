@@ -28,14 +28,17 @@ Eigen::VectorXd random_configuration(const robot::RobotModel& robot, Rng& rng) {
 
 struct Answer {
   std::set<NamePair> colliding;  ///< link names of a pair in the order of the alphabet
-  double clearance = 10.0;
+  double clearance = 0.5;
 };
 
 Answer answer_of(const Bodies& bodies) {
   Answer answer;
   for (const auto& pair : bodies.pairs()) {
-    const double gap = bodies.gap(pair, 10.0);
-    const double distance = bodies.distance(pair, 10.0);
+    // Far pairs would cost most and decide nothing.
+    const double bound = std::max(0.02, answer.clearance);
+    const double gap = bodies.gap(pair, bound);
+    if (gap >= bound) continue;
+    const double distance = bodies.distance(pair, bound);
     EXPECT_LE(gap, distance + 1e-9) << bodies.name(pair.first) << " " << bodies.name(pair.second);
     answer.clearance = std::min(answer.clearance, distance);
     if (distance > 0.0 && !(gap == 0.0 && bodies.contained(pair))) continue;
@@ -53,7 +56,7 @@ TEST(Bodies, AgreeWithTheChecker) {
   Bodies bodies(robot, scene);
   Rng rng = stream(4, "test/agree");
   int free = 0;
-  for (int trial = 0; trial < 400; ++trial) {
+  for (int trial = 0; trial < 150; ++trial) {
     const Eigen::VectorXd q = random_configuration(robot, rng);
     bodies.place(robot.link_poses(q));
     const Answer answer = answer_of(bodies);
@@ -71,8 +74,8 @@ TEST(Bodies, AgreeWithTheChecker) {
     ASSERT_LE(answer.clearance, exact + 1e-7) << "q = " << q.transpose();
     ASSERT_GE(answer.clearance, exact - 4.1e-5) << "q = " << q.transpose();
   }
-  EXPECT_GT(free, 20);
-  EXPECT_LT(free, 380);
+  EXPECT_GT(free, 5);
+  EXPECT_LT(free, 145);
 }
 
 /// Between two meshes robot::CollisionChecker asks fcl::distance too; the oracle here is every pair of triangles.

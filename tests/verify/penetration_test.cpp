@@ -54,14 +54,14 @@ TEST(Penetration, BoundsEverySampledPoint) {
   const Solid object(std::make_shared<const robot::TriangleMesh>(bottle));
   const Solid finger(robot::Cylinder{0.012, 0.05});
   int deep = 0;
-  for (int trial = 0; trial < 60; ++trial) {
+  for (int trial = 0; trial < 20; ++trial) {
     Eigen::Isometry3d X = at(rng.uniform(0.03, 0.05), rng.uniform(-0.01, 0.01), rng.uniform(0.0, 0.2));
     X.linear() =
         Eigen::AngleAxisd(rng.uniform(0, 3), Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal()).normalized())
             .toRotationMatrix();
     const Depth found = penetration(finger, object, X, 0.0);
     double sampled = 0.0;
-    for (int i = 0; i < 2000; ++i) {
+    for (int i = 0; i < 1000; ++i) {
       const auto triangle = finger.tree().corners(
           static_cast<int>(rng.index(static_cast<std::uint64_t>(finger.mesh().triangles.cols()))));
       const double u = rng.uniform();
@@ -73,8 +73,8 @@ TEST(Penetration, BoundsEverySampledPoint) {
     ASSERT_LE(found.bound, found.attained + 5e-5 + 1e-12);
     deep += found.attained > 0.001 ? 1 : 0;
   }
-  EXPECT_GT(deep, 10);
-  EXPECT_LT(deep, 60);
+  EXPECT_GT(deep, 3);
+  EXPECT_LT(deep, 20);
 }
 
 }  // namespace
