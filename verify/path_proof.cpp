@@ -142,7 +142,8 @@ bool PathProof::contact_settled(std::size_t index, double change, const Place& p
     return true;
   };
   // What is outside and apart gets no deeper than it moves beyond its distance.
-  if (const double gap = bodies_.gap(pair, change); change - gap <= allowed) return settle(change - gap);
+  const double gap = bodies_.gap(pair, change);
+  if (gap > 0.0 && change - gap <= allowed) return settle(change - gap);
   ++distances_;
   const double distance = bodies_.distance(pair, change);
   if (distance > 0.0 && change - distance <= allowed && !bodies_.contained(pair)) return settle(change - distance);

@@ -171,13 +171,13 @@ class Plates : public ::testing::Test {
 };
 
 TEST_F(Plates, NoneIsPassedThrough) {
-  const auto tally = run(1.0, 300);
+  const auto tally = run(1.0, 100);
   std::cout << tally.segments << " segments, " << tally.passed << " passed\n";
   EXPECT_EQ(tally.wrong, 0);
 }
 
 TEST_F(Plates, HalfTheBoundIsCaught) {
-  const auto tally = run(0.5, 300);
+  const auto tally = run(0.5, 150);
   std::cout << tally.segments << " segments, " << tally.passed << " passed, " << tally.wrong << " wrongly\n";
   EXPECT_GT(tally.wrong, 0);
 }
@@ -304,7 +304,7 @@ TEST(PathProof, AContactThatIsDeeperBetweenTheWaypoints) {
   EXPECT_GT(0.11 - at_ends, 0.01);
   const auto deep = deepest(0.11 - 0.0015);
   EXPECT_GT(deep.attained, 0.001);
-  EXPECT_NEAR(deep.place.fraction, 0.5, 0.1);
+  EXPECT_NEAR(deep.place.fraction, 0.5, 0.15);  // where it is 1 mm deep or more
   const auto shallow = deepest(0.11 - 0.0006);
   EXPECT_NEAR(shallow.attained, 0.0006, 1e-4);
   EXPECT_GE(shallow.proven, 0.0006);
