@@ -254,6 +254,16 @@ void add_store_commands(Builder& add) {
       });
 }
 
+void declare_verify(CLI::App& app, VerifyOptions& options) {
+  add_store(app, options.common);
+  app.add_option("--clearance", options.clearance, "That paths have to keep, m")
+      ->check(CLI::Range(1e-5, 1.0))
+      ->capture_default_str();
+  app.add_option("--max-penetration", options.max_penetration, "Of the grasp's contacts while the hand closes, m")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+}
+
 void add_commands(Builder& add) {
   add.command<DemoOptions>(
       "demo", "The whole flow on built-in simulated demonstrations", demo, [](CLI::App& app, DemoOptions& options) {
@@ -273,7 +283,7 @@ void add_commands(Builder& add) {
                             declare_check);
   add.command<MeshOptions>("mesh", "Say what is wrong with triangle meshes; repair one", mesh, declare_mesh);
   add.command<VerifyOptions>("verify", "Check grasps and paths again by code of its own, all else by hash", verify,
-                             [](CLI::App& app, VerifyOptions& options) { add_store(app, options.common); });
+                             declare_verify);
   add.command<ReportOptions>(
       "report", "Write one HTML file about what is stored", report, [](CLI::App& app, ReportOptions& options) {
         add_store(app, options.common);

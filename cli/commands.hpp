@@ -85,6 +85,8 @@ struct PlanOptions {
 };
 struct VerifyOptions {
   Common common{};
+  double clearance = 0.0005;       ///< m
+  double max_penetration = 0.001;  ///< m
 };
 struct ReportOptions {
   Common common{};

@@ -200,6 +200,17 @@ int RobotModel::link_index(const std::string& name) const {
   throw std::invalid_argument("no link '" + name + "' in robot '" + description_.name + "'");
 }
 
+Eigen::VectorXd RobotModel::joint_positions(const Eigen::Ref<const Eigen::VectorXd>& q) const {
+  require(q.size() == dof(), "joint_positions: configuration has " + std::to_string(q.size()) + " joints");
+  Eigen::VectorXd positions(static_cast<Eigen::Index>(drives_.size()));
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    const Drive& drive = drives_[i];
+    positions[static_cast<Eigen::Index>(i)] =
+        (drive.index < 0 ? 0.0 : drive.multiplier * q[drive.index]) + drive.offset;
+  }
+  return positions;
+}
+
 std::vector<Eigen::Isometry3d> RobotModel::link_poses(const Eigen::Ref<const Eigen::VectorXd>& q) const {
   std::vector<Eigen::Isometry3d> X_RL;
   link_poses(q, X_RL);

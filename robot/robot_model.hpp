@@ -144,6 +144,9 @@ class RobotModel {
   /// Arm and hand of every driven arm, in q's order: "arm", "hand", or "right/arm", "left/arm", "right/hand", ...
   std::vector<PlanningGroup> groups() const;
 
+  /// [joints] rad or m, positions of all joints in the description's order: driven and resting ones too, 0 if fixed.
+  Eigen::VectorXd joint_positions(const Eigen::Ref<const Eigen::VectorXd>& q) const;
+
   /// Poses X_RL of every link in the root frame R. Cost: one product per link. q: [d] rad.
   std::vector<Eigen::Isometry3d> link_poses(const Eigen::Ref<const Eigen::VectorXd>& q) const;
   /// The same, reusing the output's memory.
