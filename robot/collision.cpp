@@ -39,6 +39,8 @@ bool too_large(const Eigen::Ref<const Eigen::VectorXd>& q) {
   return q.size() > 0 && q.cwiseAbs().maxCoeff() > wide::World::kLargestPosition;
 }
 
+static_assert(CollisionChecker::kTogether == wide::kLanes);
+
 }  // namespace
 
 struct CollisionChecker::World {
@@ -101,15 +103,20 @@ struct CollisionChecker::World {
     return true;
   }
 
-  /// Asks for rows [first, first + count) of a batch at once, count <= kLanes. Calls verdict(row, free) for each in
-  /// turn until it returns true.
-  template <typename Verdict>
-  void sweep_rows(const ConfigurationBatch& batch, int first, int count, const Verdict& verdict,
-                  CollisionCounts& counts) const {
+  /// Pairs that the first stage cannot tell apart in rows [first, first + count) of a batch, count <= kLanes; row
+  /// first + i is lane i. Valid until the thread asks again.
+  std::span<const wide::Unknown> unknown_pairs(const ConfigurationBatch& batch, int first, int count) const {
     static const std::array<float, 12> kUsual = wide_pose(Eigen::Isometry3d::Identity());
     thread_local wide::World::Buffers buffers;
     const int pairs = fixed.sweep(wide_query(batch, first, count, kUsual), buffers, portable);
-    const std::span<const wide::Unknown> unknown(buffers.found.data(), static_cast<std::size_t>(pairs));
+    return {buffers.found.data(), static_cast<std::size_t>(pairs)};
+  }
+
+  /// Asks for such rows at once. Calls verdict(row, free) for each in turn until it returns true.
+  template <typename Verdict>
+  void sweep_rows(const ConfigurationBatch& batch, int first, int count, const Verdict& verdict,
+                  CollisionCounts& counts) const {
+    const std::span<const wide::Unknown> unknown = unknown_pairs(batch, first, count);
     counts.configurations += count;
     for (int row = first; row < first + count; ++row) {
       const Eigen::Map<const Eigen::VectorXd> q(batch.row(row).data(), batch.cols());
@@ -182,6 +189,21 @@ std::optional<int> CollisionChecker::first_colliding(const ConfigurationBatch& b
   };
   world_->sweep_batch(batch, keep, counts != nullptr ? *counts : own);
   return colliding;
+}
+
+std::vector<bool> CollisionChecker::cleared_rows(const ConfigurationBatch& batch) const {
+  const World& w = *world_;
+  w.require_batch(batch);
+  std::vector<bool> cleared(static_cast<std::size_t>(batch.rows()), !w.constant_collision);
+  for (int first = 0; first < batch.rows(); first += wide::kLanes) {
+    const int count = std::min(wide::kLanes, static_cast<int>(batch.rows()) - first);
+    for (const wide::Unknown& pair : w.unknown_pairs(batch, first, count)) {
+      for (int lane = 0; lane < count; ++lane) {
+        if ((pair.lanes >> lane & 1U) != 0) cleared[static_cast<std::size_t>(first + lane)] = false;
+      }
+    }
+  }
+  return cleared;
 }
 
 bool CollisionChecker::exact_free(const Eigen::Ref<const Eigen::VectorXd>& q) const {
