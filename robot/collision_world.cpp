@@ -66,6 +66,14 @@ CollisionWorld::CollisionWorld(const RobotModel& model, const Scene& scene, cons
   }
 }
 
+bool CollisionWorld::involves_mesh(int a, int b) const {
+  const auto is_mesh = [&](int part) {
+    const Shape& shape = parts[static_cast<std::size_t>(part)].shape.shape();
+    return std::holds_alternative<std::shared_ptr<const TriangleMesh>>(shape);
+  };
+  return is_mesh(a) || is_mesh(b);
+}
+
 const std::string& CollisionWorld::name_of(int part) const {
   const auto body = static_cast<std::size_t>(parts[static_cast<std::size_t>(part)].body);
   return of_scene(part) ? body_names[body] : robot.links()[body].name;
@@ -82,9 +90,9 @@ Placement::Placement(const CollisionWorld& world, const Eigen::Isometry3d& X_WR,
     : world_(world),
       X_WR_(X_WR),
       q_(q),
-      X_RL_(world.robot.links().size()),
+      X_RL_(std::make_unique_for_overwrite<Eigen::Isometry3d[]>(world.robot.links().size())),
+      placed_(std::make_unique_for_overwrite<Placed[]>(world.parts.size())),
       link_known_(world.robot.links().size(), 0),
-      placed_(world.parts.size()),
       part_known_(world.parts.size(), 0) {
   X_RL_[0].setIdentity();
   link_known_[0] = 1;
@@ -126,8 +134,9 @@ bool Placement::collide(int a, int b) {
 }
 
 bool Placement::hulls_apart(int a, int b) {
-  return convex_apart(world_.parts[static_cast<std::size_t>(a)].shape, at(a).X_WG,
-                      world_.parts[static_cast<std::size_t>(b)].shape, at(b).X_WG, kCullMargin);
+  const CollisionShape& A = world_.parts[static_cast<std::size_t>(a)].shape;
+  const CollisionShape& B = world_.parts[static_cast<std::size_t>(b)].shape;
+  return convex_apart(A, at(a).X_WG, B, at(b).X_WG, kCullMargin);
 }
 
 double Placement::separation(int a, int b) {
