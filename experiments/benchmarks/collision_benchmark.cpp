@@ -97,6 +97,7 @@ void along_motions(benchmark::State& state, const char* robot_yaml, bool portabl
   double limit = 0.0;
   std::int64_t configurations = 0;
   std::int64_t free = 0;
+  std::int64_t differing = 0;
   robot::CollisionCounts counts;
   for (const auto& motion : all.motions)
     benchmark::DoNotOptimize(checker.first_colliding(motion));  // makes FCL's trees
