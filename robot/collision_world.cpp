@@ -3,6 +3,7 @@
 #include "robot/collision_world.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "core/require.hpp"
@@ -31,6 +32,19 @@ std::set<BodyPair> excluded_pairs(const RobotModel& robot, const Scene& scene, c
     excluded.emplace(pair.second, pair.first);
   }
   return excluded;
+}
+
+constexpr double kWitnessDepth = 1e-5;  ///< m
+
+/// Whether a point is inside a primitive by kWitnessDepth; false for a mesh.
+bool deep_inside(const Shape& shape, const Eigen::Vector3d& p) {
+  if (const auto* box = std::get_if<Box>(&shape)) {
+    return (0.5 * box->size - p.cwiseAbs()).minCoeff() > kWitnessDepth;
+  }
+  if (const auto* sphere = std::get_if<Sphere>(&shape)) return p.norm() < sphere->radius - kWitnessDepth;
+  const auto* cylinder = std::get_if<Cylinder>(&shape);
+  return cylinder != nullptr && p.head<2>().norm() < cylinder->radius - kWitnessDepth &&
+         std::abs(p.z()) < 0.5 * cylinder->length - kWitnessDepth;
 }
 
 Placement::Placed place(const CollisionShape& shape, const Eigen::Isometry3d& X_WG) {
@@ -137,6 +151,27 @@ bool Placement::hulls_apart(int a, int b) {
   const CollisionShape& A = world_.parts[static_cast<std::size_t>(a)].shape;
   const CollisionShape& B = world_.parts[static_cast<std::size_t>(b)].shape;
   return convex_apart(A, at(a).X_WG, B, at(b).X_WG, kCullMargin);
+}
+
+/// Vertices of the hull are points of the mesh, known to a rounding that kWitnessDepth is far above.
+bool Placement::holds_a_vertex(int primitive, int mesh) {
+  const CollisionShape& hull_of = world_.parts[static_cast<std::size_t>(mesh)].shape;
+  const Shape& shape = world_.parts[static_cast<std::size_t>(primitive)].shape.shape();
+  const HullVertices& hull = hull_of.hull();
+  const Eigen::Isometry3d X_PM = at(primitive).X_WG.inverse(Eigen::Isometry) * at(mesh).X_WG;
+  for (int i = 0; i < hull.count; ++i) {
+    if (deep_inside(shape, X_PM * hull.vertex(i))) return true;
+  }
+  return false;
+}
+
+bool Placement::share_a_point(int a, int b) {
+  const auto is_mesh = [&](int part) {
+    return std::holds_alternative<std::shared_ptr<const TriangleMesh>>(
+        world_.parts[static_cast<std::size_t>(part)].shape.shape());
+  };
+  if (is_mesh(a) == is_mesh(b)) return false;
+  return is_mesh(a) ? holds_a_vertex(b, a) : holds_a_vertex(a, b);
 }
 
 double Placement::separation(int a, int b) {

@@ -61,12 +61,16 @@ class Placement {
   bool collide(int a, int b);
   /// Whether the convex hulls of two parts are apart for certain.
   bool hulls_apart(int a, int b);
+  /// Whether a vertex of a mesh was found inside a primitive: two such parts collide for certain, which FCL would find
+  /// out by descending into the mesh. Not found does not mean that they are apart.
+  bool share_a_point(int a, int b);
   double separation(int a, int b);
   /// A lower bound of the separation from bounding volumes, m.
   double distance_bound(int a, int b);
 
  private:
   const Eigen::Isometry3d& link(int index);
+  bool holds_a_vertex(int primitive, int mesh);
 
   const CollisionWorld& world_;
   Eigen::Isometry3d X_WR_;

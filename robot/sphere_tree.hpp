@@ -25,7 +25,7 @@ struct SphereTree {
 };
 
 struct SphereTreeSettings {
-  int leaves = 48;        ///< at most
+  int leaves = 128;        ///< at most
   double radius = 0.005;  ///< m; smaller balls are not divided
 };
 
