@@ -75,7 +75,12 @@ class Half {
  public:
   /// sign: 1 for the side of larger coordinates, -1 for the other.
   Half(const Cell& whole, int axis, double level, double sign)
-      : whole_(whole), axis_(axis), level_(level), sign_(sign), index_(whole.points.size(), kUnknown) {
+      : whole_(whole), axis_(axis), level_(level), index_(whole.points.size(), kUnknown) {
+    height_.reserve(whole.points.size());
+    for (const Vector3d& p : whole.points) height_.push_back(sign * (p[axis] - level));
+    half_.points.reserve(whole.points.size());
+    half_.corners.reserve(whole.corners.size());
+    half_.pieces.reserve(whole.pieces.size());
     half_.box = whole.box;
     (sign < 0.0 ? half_.box.max() : half_.box.min())[axis] = level;
     for (const Piece& piece : whole.pieces) add(piece);
@@ -85,7 +90,7 @@ class Half {
  private:
   static constexpr int kUnknown = -1;
 
-  double height(int point) const { return sign_ * (whole_.points[static_cast<std::size_t>(point)][axis_] - level_); }
+  double height(int point) const { return height_[static_cast<std::size_t>(point)]; }
 
   void keep(int point) {
     int& index = index_[static_cast<std::size_t>(point)];
@@ -100,6 +105,7 @@ class Half {
   void add(const Piece& piece) {
     const int first = static_cast<int>(half_.corners.size());
     const int* const corners = &whole_.corners[static_cast<std::size_t>(piece.first)];
+    if (std::all_of(corners, corners + piece.count, [this](int corner) { return height(corner) < 0.0; })) return;
     for (int i = 0; i < piece.count; ++i) {
       const int a = corners[i];
       const int b = corners[i + 1 == piece.count ? 0 : i + 1];
@@ -115,15 +121,14 @@ class Half {
         half_.points.push_back(cut);
       }
     }
-    const int count = static_cast<int>(half_.corners.size()) - first;
-    if (count > 0) half_.pieces.push_back({first, count});
+    half_.pieces.push_back({first, static_cast<int>(half_.corners.size()) - first});
   }
 
   const Cell& whole_;
   int axis_;
   double level_;
-  double sign_;
-  std::vector<int> index_;  ///< in the half, of the whole's points
+  std::vector<double> height_;  ///< of the whole's points above the plane, m
+  std::vector<int> index_;      ///< of the whole's points in the half
   Cell half_;
 };
 
