@@ -69,8 +69,13 @@ struct CollisionShape::Data {
 
   const SphereTree& cover() const {
     std::call_once(cover_once, [this] {
-      cover_made = mesh != nullptr && mesh->cover != nullptr ? mesh->cover
-                                                             : std::make_shared<const SphereTree>(sphere_tree(shape));
+      if (mesh != nullptr && mesh->cover != nullptr) {
+        cover_made = mesh->cover;
+      } else if (mesh != nullptr) {
+        cover_made = std::make_shared<const SphereTree>(sphere_tree(*mesh, region()));
+      } else {
+        cover_made = std::make_shared<const SphereTree>(sphere_tree(shape));
+      }
     });
     return *cover_made;
   }

@@ -358,15 +358,18 @@ SphereTree slices(const Cylinder& cylinder, double longest) {
 
 }  // namespace
 
+SphereTree sphere_tree(const TriangleMesh& mesh, const SolidRegion& region, const SphereTreeSettings& settings) {
+  return sphere_tree(
+      mesh, [&](const Vector3d& p) { return region.touches(p); }, settings);
+}
+
 SphereTree sphere_tree(const Shape& shape, const SphereTreeSettings& settings) {
   if (const auto* sphere = std::get_if<Sphere>(&shape)) return {{{Vector3d::Zero(), sphere->radius, 0, 0}}};
   if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
     return slices(*cylinder, std::max(kSliceLength * cylinder->radius, cylinder->length / settings.leaves));
   }
   if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&shape)) {
-    const SolidRegion region(**mesh);
-    return sphere_tree(
-        **mesh, [&](const Vector3d& p) { return region.touches(p); }, settings);
+    return sphere_tree(**mesh, SolidRegion(**mesh), settings);
   }
   // A box is convex and fills its bounding box.
   return sphere_tree(
