@@ -7,6 +7,7 @@
 #include "cli/resources.hpp"
 #include "cli/stored.hpp"
 #include "core/require.hpp"
+#include "robot/cover_file.hpp"
 #include "robot/load_robot.hpp"
 
 namespace opponens::cli {
@@ -23,9 +24,10 @@ robot::RobotDescription hand_of_motion(const storage::Record& record) {
 NamedWorld load_world(const std::string& robot_file, const std::string& scene_file, const std::string& object) {
   const auto robot_path = find_file(robot_file);
   const auto scene_path = find_file(scene_file);
-  robot::RobotDescription description = robot::load_robot(robot_path);
+  const std::filesystem::path covers = cover_folder();
+  robot::RobotDescription description = with_covers(robot::load_robot(robot_path), covers);
   robot::RobotDescription hand = robot::hand_of(description);
-  robot::Scene scene = robot::load_scene(scene_path);
+  robot::Scene scene = with_covers(robot::load_scene(scene_path), covers);
   const std::string name = object.empty() ? scene.object : object;
   if (name.empty()) throw InputError(scene_file + ": names no object to grasp; use --object");
   const bool known = std::any_of(scene.bodies.begin(), scene.bodies.end(),

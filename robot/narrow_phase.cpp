@@ -22,6 +22,7 @@
 
 #include "core/require.hpp"
 #include "robot/convex_distance.hpp"
+#include "robot/cover_file.hpp"
 #include "robot/solid_region.hpp"
 
 namespace opponens::robot {
@@ -68,19 +69,14 @@ struct CollisionShape::Data {
   }
 
   const SphereTree& cover() const {
-    std::call_once(cover_once, [this] {
-      if (mesh != nullptr && mesh->cover != nullptr) {
-        cover_made = mesh->cover;
-      } else if (mesh != nullptr) {
-        cover_made = std::make_shared<const SphereTree>(sphere_tree(*mesh, region()));
-      } else {
-        cover_made = std::make_shared<const SphereTree>(sphere_tree(shape));
-      }
-    });
-    return *cover_made;
+    if (mesh != nullptr && mesh->cover != nullptr) return mesh->cover->tree;
+    std::call_once(cover_once,
+                   [this] { cover_made = mesh != nullptr ? sphere_tree(*mesh, region()) : sphere_tree(shape); });
+    return cover_made;
   }
 
   const HullVertices& hull() const {
+    if (mesh->cover != nullptr) return mesh->cover->hull;
     std::call_once(hull_once, [this] { hull_made = hull_vertices(*mesh); });
     return hull_made;
   }
@@ -100,7 +96,7 @@ struct CollisionShape::Data {
   mutable std::once_flag cover_once;
   mutable std::once_flag hull_once;
   mutable HullVertices hull_made;
-  mutable std::shared_ptr<const SphereTree> cover_made;
+  mutable SphereTree cover_made;
   mutable std::unique_ptr<const SolidRegion> region_made;
   mutable std::shared_ptr<fcl::CollisionGeometryd> fcl_made;
 };
