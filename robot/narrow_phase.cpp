@@ -53,6 +53,7 @@ std::shared_ptr<fcl::CollisionGeometryd> fcl_mesh(const TriangleMesh& mesh) {
 
 struct CollisionShape::Data {
   Shape shape;
+  Bounds bounds;
   std::shared_ptr<const TriangleMesh> mesh;            ///< null for a primitive
   std::shared_ptr<fcl::CollisionGeometryd> primitive;  ///< null for a mesh
 
@@ -146,6 +147,7 @@ std::shared_ptr<const CollisionShape::Data> make_data(const Shape& shape) {
   auto data = std::make_shared<CollisionShape::Data>();
   data->shape = shape;
   data->primitive = std::visit(FclPrimitive{}, shape);
+  data->bounds = std::visit(BoundsOf{}, shape);
   // FCL fills this cache lazily elsewhere; filled here, the geometry is read-only afterwards.
   if (data->primitive != nullptr) data->primitive->computeLocalAABB();
   if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&shape)) data->mesh = *mesh;
@@ -227,7 +229,7 @@ double mesh_primitive_gap(const CollisionShape& mesh, const Eigen::Isometry3d& X
 CollisionShape::CollisionShape(const Shape& shape) {
   const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&shape);
   data_ = mesh != nullptr && *mesh != nullptr ? shared_data(*mesh) : make_data(shape);
-  bounds_ = std::visit(BoundsOf{}, shape);
+  bounds_ = data_->bounds;
 }
 
 const SphereTree& CollisionShape::cover() const { return data_->cover(); }
