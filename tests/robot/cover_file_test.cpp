@@ -202,10 +202,10 @@ TEST_F(CoverFile, AReadOnlyFolderAnswersAndStaysAsItIs) {
   fs::permissions(folder_, kReadOnly | fs::perms::others_read | fs::perms::others_exec);
   const bool root = ::geteuid() == 0;  // root may write everywhere
   constexpr uid_t kNobody = 65534;
-  if (root) ASSERT_EQ(::seteuid(kNobody), 0);
+  ASSERT_EQ(root ? ::seteuid(kNobody) : 0, 0);
   EXPECT_FALSE(std::ofstream(folder_ / "trial").is_open());
   for (const Mesh& mesh : {known, box_mesh(0.2)}) expect_equal(cover_of(mesh, folder_), mesh_cover(*mesh));
-  if (root) ASSERT_EQ(::seteuid(0), 0);
+  ASSERT_EQ(root ? ::seteuid(0) : 0, 0);
   EXPECT_EQ(files().size(), 1U);
 }
 
