@@ -18,7 +18,7 @@ struct MeshCover {
   HullVertices hull;
 };
 
-/// Of vertices and triangles alone. About 1 s per million triangles.
+/// Of vertices and triangles alone. About 2 s per million triangles.
 MeshCover mesh_cover(const TriangleMesh& mesh);
 
 /// The same description with the covers of all its meshes, which save the collision checker making them. They are read
