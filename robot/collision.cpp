@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <memory>
+#include <mutex>
 #include <set>
 #include <span>
 
@@ -45,15 +47,14 @@ static_assert(CollisionChecker::kTogether == wide::kLanes);
 
 struct CollisionChecker::World {
   CollisionWorld exact;
-  wide::World fixed;   ///< the robot's root where the scene puts it
-  wide::World flying;  ///< anywhere
+  wide::World fixed;  ///< the robot's root where the scene puts it
   bool portable;
   bool constant_collision = false;       ///< of what no joint moves, the scene included
   bool constant_self_collision = false;  ///< of the robot with itself
 
   World(const RobotModel& robot, const Scene& scene, const std::vector<BodyPair>& touching,
         const CollisionSettings& settings)
-      : exact(robot, scene, touching), fixed(exact, true), flying(exact, false), portable(settings.portable) {
+      : exact(robot, scene, touching), fixed(exact, true), portable(settings.portable) {
     const Eigen::VectorXd zero = Eigen::VectorXd::Zero(robot.dof());
     Placement placement(exact, exact.X_WR, zero);
     for (const auto& [a, b] : fixed.constant_pairs()) {
@@ -61,6 +62,12 @@ struct CollisionChecker::World {
       constant_collision = true;
       constant_self_collision = constant_self_collision || !exact.of_scene(b);
     }
+  }
+
+  /// The robot's root anywhere: made when first asked for, which most checkers never are.
+  const wide::World& flying() const {
+    std::call_once(flying_once, [this] { flying_made = std::make_unique<const wide::World>(exact, false); });
+    return *flying_made;
   }
 
   void require_configuration(const Eigen::Ref<const Eigen::VectorXd>& q) const {
@@ -140,6 +147,10 @@ struct CollisionChecker::World {
           batch, first, count, [&](int row, bool free) { return ended = verdict(row, free); }, counts);
     }
   }
+
+ private:
+  mutable std::once_flag flying_once;
+  mutable std::unique_ptr<const wide::World> flying_made;
 };
 
 CollisionChecker::CollisionChecker(const RobotModel& robot, const Scene& scene, std::vector<BodyPair> touching,
@@ -163,11 +174,11 @@ bool CollisionChecker::free(const Eigen::Isometry3d& X_WR, const Eigen::Ref<cons
   const World& w = *world_;
   w.require_configuration(q);
   const Eigen::Isometry3d X_SR = w.exact.X_WR.inverse() * X_WR;
-  if (too_large(q) || !w.flying.reaches(X_SR)) return w.exact_free(X_WR, q);
+  if (too_large(q) || !w.flying().reaches(X_SR)) return w.exact_free(X_WR, q);
   const std::array<float, 12> root = wide_pose(X_SR);
   const ConfigurationBatch row = q.transpose();
   thread_local wide::World::Buffers buffers;
-  const int pairs = w.flying.sweep(wide_query(row, 0, 1, root), buffers, w.portable);
+  const int pairs = w.flying().sweep(wide_query(row, 0, 1, root), buffers, w.portable);
   const std::span<const wide::Unknown> unknown(buffers.found.data(), static_cast<std::size_t>(pairs));
   std::int64_t asked = 0;
   return !w.constant_self_collision && w.settle(unknown, 0, X_WR, q, asked);
