@@ -85,7 +85,7 @@ std::array<Cell, 2> cut(const Cell& cell, int axis, double level, const Inside& 
     half.box = cell.box;
     (side == 0 ? half.box.max() : half.box.min())[axis] = level;
     for (const Piece& piece : cell.pieces) {
-      clipped.resize(static_cast<std::size_t>(piece.count) + 4);
+      clipped.resize(2 * static_cast<std::size_t>(piece.count));
       const int count = clip(&cell.points[static_cast<std::size_t>(piece.first)], piece.count, axis, level,
                              side == 0 ? -1.0 : 1.0, clipped.data());
       if (count > 0) add_piece(half, clipped.data(), count);
@@ -197,7 +197,7 @@ bool empty(const Branch& branch) { return branch.cell.points.empty() && branch.c
 std::vector<Branch> grow(Branch root, const Inside& inside, const SphereTreeSettings& settings) {
   std::vector<Branch> branches{std::move(root)};
   std::vector<int> leaves{0};
-  while (static_cast<int>(leaves.size()) < settings.leaves) {
+  while (!leaves.empty() && static_cast<int>(leaves.size()) < settings.leaves) {
     const auto largest = std::max_element(leaves.begin(), leaves.end(), [&](int a, int b) {
       return branches[static_cast<std::size_t>(a)].ball.radius < branches[static_cast<std::size_t>(b)].ball.radius;
     });
