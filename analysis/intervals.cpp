@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <boost/math/distributions/binomial.hpp>
 #include <boost/math/distributions/students_t.hpp>
 
 #include "analysis/pca.hpp"
@@ -58,6 +59,14 @@ void check(double confidence, std::size_t replicates) {
 }
 
 }  // namespace
+
+Interval proportion_interval(int events, int trials, double confidence) {
+  require(trials > 0 && events >= 0 && events <= trials, "proportion_interval: 0 <= events <= trials, trials > 0");
+  require(confidence > 0.0 && confidence < 1.0, "proportion_interval: confidence must be in (0, 1)");
+  using Binomial = boost::math::binomial_distribution<double>;
+  const double tail = 0.5 * (1.0 - confidence);
+  return {Binomial::find_lower_bound_on_p(trials, events, tail), Binomial::find_upper_bound_on_p(trials, events, tail)};
+}
 
 Eigen::VectorXi resample_counts(int clusters, Rng& rng) {
   require(clusters >= 2, "bootstrap: at least 2 clusters");

@@ -17,6 +17,10 @@ struct Interval {
   double high = 0.0;
 };
 
+/// Exact interval of a probability from independent trials (Clopper and Pearson 1934, doi:10.1093/biomet/26.4.404): it
+/// holds the truth with at least the confidence. 0 <= events <= trials, trials > 0.
+Interval proportion_interval(int events, int trials, double confidence);
+
 /// How often each of c clusters occurs in one bootstrap resample: c draws with replacement. [c], sums to c.
 Eigen::VectorXi resample_counts(int clusters, Rng& rng);
 

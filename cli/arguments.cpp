@@ -52,7 +52,8 @@ void add_threads(CLI::App& app, int& threads) {
 
 template <typename Options>
 void add_world(CLI::App& app, Options& options) {
-  app.add_option("--robot", options.robot, "robot.yaml")->capture_default_str();
+  app.add_option("--robot", options.robot, "robot.yaml; FILE#ARM: an arm of a robot with several")
+      ->capture_default_str();
   app.add_option("--scene", options.scene, "Scene YAML")->capture_default_str();
   app.add_option("--object", options.object, "Body of the scene to grasp; default: the one the scene names");
 }
@@ -175,6 +176,29 @@ void declare_plan(CLI::App& app, PlanOptions& options) {
       ->capture_default_str();
 }
 
+void declare_check(CLI::App& app, CheckOptions& options) {
+  app.add_option("--robot", options.robot, "robot.yaml; an arm without a hand is enough")->capture_default_str();
+  app.add_option("--scene", options.scene,
+                 "Scene (docs/scene_files.md); default with --requests: the file beside each, scene... for request...");
+  app.add_option("--configs", options.configs, "CSV with one configuration a line; its header names the joints");
+  app.add_option("--requests", options.requests, "MoveIt or MotionBenchMaker motion plan requests");
+  app.add_option(
+         "--base", options.base,
+         "Pose of the robot's root in the scene, x,y,z or x,y,z,roll,pitch,yaw (m, rad); default: the scene's own")
+      ->delimiter(',');
+}
+
+void declare_mesh(CLI::App& app, MeshOptions& options) {
+  app.add_option("FILE", options.files, "STL, OBJ or DAE")->required();
+  app.add_option("--unit", options.unit, "Of the numbers in the files")
+      ->check(CLI::IsMember({"m", "cm", "mm", "in"}))
+      ->capture_default_str();
+  app.add_flag("--intersections", options.intersections, "Count pairs of triangles that cross as well");
+  app.add_option("--repair", options.repair, "STL to write, in metres: the one FILE repaired");
+  app.add_option("--simplify", options.simplify, "Triangles that the repaired mesh shall have")
+      ->check(CLI::Range(4, 100000000));
+}
+
 void declare_show(CLI::App& app, ShowOptions& options) {
   app.add_option("ID", options.id, "Object id, or the beginning of one");
   add_store(app, options.common);
@@ -189,6 +213,24 @@ void declare_export(CLI::App& app, ExportOptions& options) {
   app.add_option("--format", options.format, "Form of the objects alone")
       ->check(CLI::IsMember({"csv", "json", "robomimic"}));
   app.add_option("--out", options.out, "File to write with --format; of csv: the folder");
+}
+
+void declare_robot(CLI::App& app, RobotOptions& options) {
+  app.add_option("FILE", options.file, "robot.yaml, hand.yaml, or a URDF without either")->required();
+  add_seed(app, options.seed);
+  app.add_option("--samples", options.samples, "Random configurations checked for self-collision; 0 = none")
+      ->check(CLI::Range(0, 10000000))
+      ->capture_default_str();
+  app.add_option("--packages", options.packages, "Folders searched for package://NAME; of a URDF without YAML");
+  CLI::Option* const skeleton =
+      app.add_flag("--skeleton", options.skeleton, "Print a hand.yaml to start from, made from a URDF; nothing else");
+  CLI::Option* const contacts = app.add_flag("--propose-contacts", options.propose_contacts,
+                                             "Print tips and contact points found on the hand's surface, as YAML");
+  CLI::Option* const allowed = app.add_flag("--allowed-collisions", options.allowed_collisions,
+                                            "Print the link pairs that need no checking, as YAML");
+  skeleton->excludes(contacts)->excludes(allowed);
+  contacts->excludes(allowed);
+  app.add_option("--picture", options.picture, "SVG file to write: the robot from several sides");
 }
 
 /// The commands that look after a store.
@@ -212,6 +254,16 @@ void add_store_commands(Builder& add) {
       });
 }
 
+void declare_verify(CLI::App& app, VerifyOptions& options) {
+  add_store(app, options.common);
+  app.add_option("--clearance", options.clearance, "That paths have to keep, m")
+      ->check(CLI::Range(1e-5, 1.0))
+      ->capture_default_str();
+  app.add_option("--max-penetration", options.max_penetration, "Of the grasp's contacts while the hand closes, m")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+}
+
 void add_commands(Builder& add) {
   add.command<DemoOptions>(
       "demo", "The whole flow on built-in simulated demonstrations", demo, [](CLI::App& app, DemoOptions& options) {
@@ -227,8 +279,11 @@ void add_commands(Builder& add) {
                               declare_compare);
   add.command<GraspOptions>("grasp", "Search force-closure grasps along the synergies", grasp, declare_grasp);
   add.command<PlanOptions>("plan", "Plan a hand-arm path to one of the grasps", plan, declare_plan);
+  add.command<CheckOptions>("check", "Collision verdict, clearance and colliding pairs of given configurations", check,
+                            declare_check);
+  add.command<MeshOptions>("mesh", "Say what is wrong with triangle meshes; repair one", mesh, declare_mesh);
   add.command<VerifyOptions>("verify", "Check grasps and paths again by code of its own, all else by hash", verify,
-                             [](CLI::App& app, VerifyOptions& options) { add_store(app, options.common); });
+                             declare_verify);
   add.command<ReportOptions>(
       "report", "Write one HTML file about what is stored", report, [](CLI::App& app, ReportOptions& options) {
         add_store(app, options.common);
@@ -245,6 +300,7 @@ void add_commands(Builder& add) {
                              declare_show(app, options);
                              app.get_option("ID")->required();
                            });
+  add.command<RobotOptions>("robot", "Say what is understood of a robot's or a hand's files", robot, declare_robot);
   add_store_commands(add);
 }
 

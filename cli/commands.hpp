@@ -85,6 +85,8 @@ struct PlanOptions {
 };
 struct VerifyOptions {
   Common common{};
+  double clearance = 0.0005;       ///< m
+  double max_penetration = 0.001;  ///< m
 };
 struct ReportOptions {
   Common common{};
@@ -116,6 +118,30 @@ struct StaleOptions {
   Common common{};
   std::vector<std::filesystem::path> files{};  ///< folders with outside files
 };
+struct CheckOptions {
+  std::string robot = "models/ur5_allegro/ur5_allegro_right.yaml";
+  std::string scene{};                            ///< empty: the file beside each request
+  std::vector<double> base{};                     ///< x, y, z m (and roll, pitch, yaw rad); empty: the scene's own
+  std::filesystem::path configs{};                ///< CSV
+  std::vector<std::filesystem::path> requests{};  ///< MoveIt motion plan requests
+};
+struct MeshOptions {
+  std::vector<std::string> files{};
+  std::string unit = "m";
+  bool intersections = false;
+  std::filesystem::path repair{};  ///< STL to write; empty: only check
+  int simplify = 0;                ///< triangles wanted; 0: all
+};
+struct RobotOptions {
+  std::string file{};  ///< robot.yaml, hand.yaml or URDF
+  std::uint64_t seed = 1;
+  int samples = 1000;
+  std::vector<std::filesystem::path> packages{};  ///< folders searched for package://NAME, of a URDF
+  bool skeleton = false;
+  bool propose_contacts = false;
+  bool allowed_collisions = false;
+  std::filesystem::path picture{};  ///< SVG to write; empty: none
+};
 struct DemoOptions {
   std::filesystem::path out = "demo";
   std::uint64_t seed = 1;
@@ -139,6 +165,9 @@ int export_objects(const ExportOptions& options, const Console& console);
 int merge(const MergeOptions& options, const Console& console);
 int repair(const RepairOptions& options, const Console& console);
 int stale(const StaleOptions& options, const Console& console);
+int check(const CheckOptions& options, const Console& console);
+int mesh(const MeshOptions& options, const Console& console);
+int robot(const RobotOptions& options, const Console& console);
 int demo(const DemoOptions& options, const Console& console);
 
 }  // namespace opponens::cli

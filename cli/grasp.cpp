@@ -25,7 +25,7 @@ class Reach {
  public:
   explicit Reach(const NamedWorld& world)
       : world_(world),
-        kinematics_(world.robot),
+        kinematics_(robot::make_inverse_kinematics(world.robot)),
         free_space_(world.robot, world.scene),
         closing_(world.robot, world.scene, world.hand_object_pairs()),
         depth_(world.robot, world.scene, world.object, world.hand_links()),
@@ -39,7 +39,7 @@ class Reach {
 
  private:
   const NamedWorld& world_;
-  robot::ArmKinematics kinematics_;
+  robot::InverseKinematics kinematics_;
   robot::CollisionChecker free_space_;
   robot::CollisionChecker closing_;
   motion::ContactDepth depth_;

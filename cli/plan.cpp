@@ -161,7 +161,7 @@ Json advise(const NamedWorld& world, const Planning& planning, const Console& co
                        " goals left out: their closing segment is not valid at this resolution");
   }
   if (!planning.keeps_margin()) {
-    warnings.emplace_back("the start is in collision or nearer than 0.5 mm to the scene: no margin is kept from it");
+    warnings.emplace_back("the start is in collision or nearer than 0.75 mm to the scene: no margin is kept from it");
   }
   for (const auto& warning : warnings) console.advise(warning);
   return warnings;

@@ -27,9 +27,10 @@ LikenessReference grasp_phase_reference(const SynergyGroup& group) {
 
 /// Paths keep this distance from the scene, so that they do not touch it between the samples they are checked at: at
 /// 0.002 rad the hand moves 2 mm, and a fingertip of 6 mm radius that passes an edge comes 0.08 mm nearer between two
-/// samples. No margin where the start is nearer than that to something.
+/// samples. Half again as much as verify asks for by default, whose proof holds between the samples. No margin where
+/// the start is nearer than that to something.
 FreeSpace free_space(const Eigen::VectorXd& start, const NamedWorld& world) {
-  constexpr double kMargin = 0.0005;  // m
+  constexpr double kMargin = 0.00075;  // m
   robot::CollisionChecker grown(world.robot, motion::grown_scene(world.scene, kMargin));
   if (grown.free(start)) return {kMargin, std::move(grown)};
   return {0.0, robot::CollisionChecker(world.robot, world.scene)};

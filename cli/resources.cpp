@@ -27,15 +27,28 @@ std::vector<fs::path> data_folders() {
 
 }  // namespace
 
-fs::path find_file(const std::string& name) {
-  if (name.empty()) throw InputError("an empty file name was given");
+std::optional<fs::path> look_up(const std::string& name) {
+  if (name.empty()) return std::nullopt;
   if (fs::exists(name)) return name;
   if (fs::path(name).is_relative()) {
     for (const fs::path& folder : data_folders()) {
       if (fs::exists(folder / name)) return folder / name;
     }
   }
+  return std::nullopt;
+}
+
+fs::path find_file(const std::string& name) {
+  if (name.empty()) throw InputError("an empty file name was given");
+  if (const auto file = look_up(name)) return *file;
   throw InputError(name + ": no such file, neither here nor in the data folder");
+}
+
+NamedRobot named_robot(const std::string& text) {
+  const std::size_t hash = text.rfind('#');
+  if (hash == std::string::npos || look_up(text)) return {find_file(text), ""};
+  if (hash + 1 == text.size()) throw InputError(text + ": names no arm after the #");
+  return {find_file(text.substr(0, hash)), text.substr(hash + 1)};
 }
 
 std::string recorded_name(const fs::path& file) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 namespace opponens::cli {
@@ -10,6 +11,18 @@ namespace opponens::cli {
 /// The file a user named: as given when it exists, else below the data folder ($OPPONENS_DATA, the installed
 /// share/opponens beside this program, or the source tree it was built from). Throws InputError when nowhere.
 std::filesystem::path find_file(const std::string& name);
+
+/// The same; nothing when it is nowhere.
+std::optional<std::filesystem::path> look_up(const std::string& name);
+
+/// A robot.yaml, and the arm of it that is meant.
+struct NamedRobot {
+  std::filesystem::path file;
+  std::string arm;  ///< empty: the file's only or default arm
+};
+/// What --robot names: FILE, or FILE#ARM of a robot with several arms (unless a file has that whole name). Throws
+/// InputError when there is no such file.
+NamedRobot named_robot(const std::string& text);
 
 /// The name under which a found file is recorded and found again: relative to the data folder when it lies inside, so
 /// that equal runs on two machines store equal bytes; else absolute, so that it is found from any working directory.

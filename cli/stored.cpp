@@ -145,8 +145,15 @@ const SynergyGroup& group_named(const SynergySet& set, const std::string& name) 
   return *found;
 }
 
+std::string recorded_arm(const std::string& robot) {
+  const std::size_t hash = robot.rfind('#');
+  // No arm has a slash in its name: this # is a folder's.
+  return hash == std::string::npos || robot.find('/', hash) != std::string::npos ? "" : robot.substr(hash + 1);
+}
+
 WorldKey world_key(const storage::Record& record) {
-  WorldKey key{parameters_of(record).at("world").at("object"), {}};
+  const nlohmann::json world = parameters_of(record).at("world");
+  WorldKey key{world.at("object"), recorded_arm(world.at("robot")), {}};
   for (const auto& [name, hash] : record.provenance.files) key.files.insert(hash);
   return key;
 }
@@ -163,8 +170,9 @@ std::vector<Stored<Grasp>> grasps_of(const storage::Store& store, const std::str
   return result;
 }
 
-nlohmann::json world_parameters(const std::string& robot, const std::string& scene, const std::string& object) {
-  return {{"robot", recorded_name(find_file(robot))}, {"scene", recorded_name(find_file(scene))}, {"object", object}};
+nlohmann::json world_parameters(const NamedRobot& robot, const std::string& scene, const std::string& object) {
+  const std::string arm = robot.arm.empty() ? "" : "#" + robot.arm;
+  return {{"robot", recorded_name(robot.file) + arm}, {"scene", recorded_name(find_file(scene))}, {"object", object}};
 }
 
 nlohmann::json parameters_of(const storage::Record& record) {

@@ -12,6 +12,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "cli/console.hpp"
+#include "cli/resources.hpp"
 #include "core/demonstration.hpp"
 #include "core/grasp.hpp"
 #include "core/synergies.hpp"
@@ -80,9 +81,12 @@ const SynergyGroup& group_named(const SynergySet& set, const std::string& name);
 /// Robot, scene and object by what their files hold, not by how their paths are spelt.
 struct WorldKey {
   std::string object;
+  std::string arm;              ///< of a robot with several arms
   std::set<std::string> files;  ///< SHA-256 of each
   bool operator==(const WorldKey&) const = default;
 };
+/// The arm in a recorded "FILE#ARM"; empty: none.
+std::string recorded_arm(const std::string& robot);
 /// Of a stored grasp, search or path.
 WorldKey world_key(const storage::Record& record);
 
@@ -90,7 +94,8 @@ WorldKey world_key(const storage::Record& record);
 std::vector<Stored<Grasp>> grasps_of(const storage::Store& store, const std::string& synergies, const WorldKey& world);
 
 /// The parameters by which grasps and paths find their robot, scene and object again.
-nlohmann::json world_parameters(const std::string& robot, const std::string& scene, const std::string& object);
+/// The robot's arm, if it has several, is named with its file: "FILE#ARM".
+nlohmann::json world_parameters(const NamedRobot& robot, const std::string& scene, const std::string& object);
 /// Robot, scene and object that a stored object was made with.
 nlohmann::json parameters_of(const storage::Record& record);
 

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 #include <map>
+#include <memory>
 #include <set>
 
 #include "cli/commands.hpp"
@@ -22,19 +23,30 @@ namespace {
 
 using opponens::verify::Verdict;
 
-/// Worlds by their parameters: many objects share one.
-class Worlds {
- public:
-  const NamedWorld& of(const Json& parameters) {
+/// A world with its path checker, whose trees are built when the first path asks for them.
+struct CheckedWorld {
+  NamedWorld named;
+  std::unique_ptr<opponens::verify::PathChecker> paths{};  ///< refers to `named`
+
+  opponens::verify::PathChecker& path_checker() {
+    if (!paths) paths = std::make_unique<opponens::verify::PathChecker>(named.robot, named.scene);
+    return *paths;
+  }
+};
+
+/// What the checks share: worlds by their parameters, since many objects have the same, and the limits of paths.
+struct Shared {
+  std::map<std::string, CheckedWorld> worlds{};
+  opponens::verify::PathCheckSettings limits{};
+
+  CheckedWorld& world_of(const Json& parameters) {
     const std::string key = parameters.dump();
-    const auto found = worlds_.find(key);
-    if (found != worlds_.end()) return found->second;
-    return worlds_.emplace(key, load_world(parameters.at("robot"), parameters.at("scene"), parameters.at("object")))
+    const auto found = worlds.find(key);
+    if (found != worlds.end()) return found->second;
+    return worlds
+        .emplace(key, CheckedWorld{load_world(parameters.at("robot"), parameters.at("scene"), parameters.at("object"))})
         .first->second;
   }
-
- private:
-  std::map<std::string, NamedWorld> worlds_;
 };
 
 /// What the object was made from must be there, and robot, scene and meshes be the same as then.
@@ -51,11 +63,11 @@ void check_origin(const storage::Record& record, const std::set<std::string>& st
   }
 }
 
-Verdict grasp_verdict(const storage::Store& store, const storage::Record& record, Worlds& worlds) {
+Verdict grasp_verdict(const storage::Store& store, const storage::Record& record, Shared& shared) {
   const Grasp grasp = storage::decode_grasp(record);
   const SynergySet synergies = storage::decode_synergy_set(store.read(record.provenance.inputs.at(0)));
   const SynergyGroup& group = group_named(synergies, grasp.group);
-  const NamedWorld& world = worlds.of(parameters_of(record).at("world"));
+  const NamedWorld& world = shared.world_of(parameters_of(record).at("world")).named;
   const opponens::verify::GraspCheckSettings settings;
   Verdict verdict =
       opponens::verify::check_grasp(grasp, {&group.box, &world.hand, &world.scene.body(world.object)}, settings);
@@ -71,9 +83,10 @@ const ArmSolution& solution_used(const Grasp& grasp, const Eigen::VectorXd& q_ar
                            });
 }
 
-Verdict path_verdict(const storage::Store& store, const storage::Record& record, Worlds& worlds) {
+Verdict path_verdict(const storage::Store& store, const storage::Record& record, Shared& shared) {
   const Json parameters = parameters_of(record);
-  const NamedWorld& world = worlds.of(parameters.at("world"));
+  CheckedWorld& checked = shared.world_of(parameters.at("world"));
+  const NamedWorld& world = checked.named;
   const Grasp grasp = storage::decode_grasp(store.read(std::get<std::string>(record.fields.at("goal_grasp"))));
   const PlanResult planned = storage::decode_plan_result(record);
   const JointPath motion{planned.path.joint_names, std::get<Eigen::MatrixXd>(record.fields.at("motion"))};
@@ -96,19 +109,14 @@ Verdict path_verdict(const storage::Store& store, const storage::Record& record,
   claim.X_WH_grasp = X_WO * grasp.X_OH;
   claim.object = world.object;
   for (const auto& contact : grasp.contacts) claim.contact_links.insert(contact.link);
-  opponens::verify::PathCheckSettings settings;
-  // The stored resolution may only make the check denser: a coarsely planned path is not checked coarsely.
-  settings.spacing = std::min(settings.spacing, parameters.at("resolution").get<double>() / 10.0);
-  return opponens::verify::check_path(motion, claim, world.robot, world.scene, settings);
+  return checked.path_checker().check(motion, claim, shared.limits);
 }
 
 struct Tally {
   Json failed = Json::array();
   Json verdicts = Json::array();
   std::vector<std::string> ids;
-  double worst_clearance = std::numeric_limits<double>::infinity();
-  std::pair<std::string, std::string> worst_pair;
-  double worst_penetration = 0.0;
+  Verdict worst;  ///< of all paths together
 };
 
 void add(const std::string& id, const std::string& kind, const Verdict& verdict, Tally& tally) {
@@ -117,16 +125,20 @@ void add(const std::string& id, const std::string& kind, const Verdict& verdict,
   tally.verdicts.push_back({{"id", id}, {"kind", kind}, {"passed", verdict.ok}, {"reason", reason}});
   tally.ids.push_back(id);
   if (!verdict.ok) tally.failed.push_back({{"id", id}, {"reason", reason}});
-  if (verdict.worst_clearance < tally.worst_clearance) {
-    tally.worst_clearance = verdict.worst_clearance;
-    tally.worst_pair = verdict.worst_pair;
+  Verdict& worst = tally.worst;
+  if (verdict.worst_clearance < worst.worst_clearance) {
+    worst.worst_clearance = verdict.worst_clearance;
+    worst.worst_pair = verdict.worst_pair;
+    worst.worst_place = verdict.worst_place + " of path " + id.substr(0, 12);
   }
-  tally.worst_penetration = std::max(tally.worst_penetration, verdict.worst_contact_penetration);
+  worst.proven_clearance = std::min(worst.proven_clearance, verdict.proven_clearance);
+  worst.worst_contact_penetration = std::max(worst.worst_contact_penetration, verdict.worst_contact_penetration);
+  worst.proven_contact_penetration = std::max(worst.proven_contact_penetration, verdict.proven_contact_penetration);
 }
 
-using Check = Verdict (*)(const storage::Store&, const storage::Record&, Worlds&);
+using Check = Verdict (*)(const storage::Store&, const storage::Record&, Shared&);
 
-void check_all(const storage::Store& store, const char* kind, Check check, Worlds& worlds, Progress& progress,
+void check_all(const storage::Store& store, const char* kind, Check check, Shared& shared, Progress& progress,
                Tally& tally) {
   const auto entries = store.list(kind);
   std::set<std::string> stored;
@@ -137,21 +149,43 @@ void check_all(const storage::Store& store, const char* kind, Check check, World
     const auto record = store.read(entry.id);
     Verdict verdict;
     check_origin(record, stored, verdict);
-    if (verdict.ok) verdict = check(store, record, worlds);
+    if (verdict.ok) verdict = check(store, record, shared);
     add(entry.id, entry.kind, verdict, tally);
   }
 }
 
-std::vector<std::string> sentences() {
+std::string millimetres(double metres) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f mm", 1e3 * metres);
+  return text;
+}
+
+std::vector<std::string> sentences(const VerifyOptions& options) {
   return {
       "Every file's and every object's hash was computed again and compared.",
       "What grasps and paths were made from is in the store, and their robot, scene and mesh files are the same.",
       "Grasps: rigid poses, joint limits, slack against the synergy box, contacts on both surfaces, that their "
       "wrenches positively span all forces and torques, the stored quality (non-negative least squares and descent, "
       "no shared solver), and that each arm solution puts the palm where the grasp says.",
-      "Paths: start, pre-grasp, grasp and the palm's poses there, joint limits, and collision every 0.002 rad (or a "
-      "tenth of the planner's resolution where that is less) by a loop of its own, between the planner's own samples; "
-      "contacts only between the grasp's own links and the object, on the closing segment."};
+      "Paths: start, pre-grasp, grasp and the palm's poses there, joint limits, and for the whole motion, by "
+      "conservative "
+      "advancement and not by samples, that all bodies keep " +
+          millimetres(options.clearance) +
+          " from each other; on the closing segment the grasp's own links may touch the object, at most " +
+          millimetres(options.max_penetration) + " deep."};
+}
+
+/// What was found of all paths; empty when there was none.
+std::string clearance_sentence(const Verdict& worst) {
+  if (!std::isfinite(worst.worst_clearance)) return "";
+  std::string text = "; worst clearance " + millimetres(worst.worst_clearance) + " (" + worst.worst_pair.first +
+                     " and " + worst.worst_pair.second + " " + worst.worst_place + "), proven: nowhere below " +
+                     millimetres(worst.proven_clearance);
+  if (worst.proven_contact_penetration > 0.0) {
+    text += "; deepest contact while closing " + millimetres(worst.worst_contact_penetration) +
+            ", proven: nowhere above " + millimetres(worst.proven_contact_penetration);
+  }
+  return text;
 }
 
 }  // namespace
@@ -163,21 +197,29 @@ int verify(const VerifyOptions& options, const Console& console) {
   for (const auto& sentence : damage) Console::warn(sentence);
   if (!damage.empty()) return kStoreDamaged;
 
-  Worlds worlds;
+  Shared shared;
+  shared.limits.proof.clearance = options.clearance;
+  shared.limits.proof.max_penetration = options.max_penetration;
   Progress progress(console, "verifying");
   Tally tally;
-  check_all(store, kGrasp, grasp_verdict, worlds, progress, tally);
-  check_all(store, kPath, path_verdict, worlds, progress, tally);
+  check_all(store, kGrasp, grasp_verdict, shared, progress, tally);
+  check_all(store, kPath, path_verdict, shared, progress, tally);
   // Not its own earlier verdicts: where nothing changed, the verdict is the same object.
   const auto checked = store.list().size() - store.list(kVerdicts).size();
   Json result = document("verify");
+  const Verdict& worst = tally.worst;
   result.update(
       {{"checked", checked},
        {"failed", tally.failed},
-       {"worst_clearance_m", number(tally.worst_clearance)},
-       {"worst_pair", tally.worst_pair.first.empty() ? "" : tally.worst_pair.first + " and " + tally.worst_pair.second},
-       {"worst_contact_penetration_m", tally.worst_penetration},
-       {"checks", sentences()},
+       {"clearance_m", options.clearance},
+       {"max_penetration_m", options.max_penetration},
+       {"worst_clearance_m", number(worst.worst_clearance)},
+       {"worst_pair", worst.worst_pair.first.empty() ? "" : worst.worst_pair.first + " and " + worst.worst_pair.second},
+       {"worst_place", worst.worst_place},
+       {"proven_clearance_m", number(worst.proven_clearance)},
+       {"worst_contact_penetration_m", worst.worst_contact_penetration},
+       {"proven_contact_penetration_m", worst.proven_contact_penetration},
+       {"checks", sentences(options)},
        {"verdicts", tally.verdicts}});
   storage::Record record{kVerdicts, "verification", provenance("verify", tally.ids, {}, Json::object(), 0), {}};
   record.fields["verdicts"] = result.dump();
@@ -185,12 +227,9 @@ int verify(const VerifyOptions& options, const Console& console) {
   for (const auto& one : tally.failed) {
     console.say("FAILED " + one.at("id").get<std::string>().substr(0, 12) + ": " + one.at("reason").get<std::string>());
   }
-  char clearance[64] = "";
-  if (std::isfinite(tally.worst_clearance)) {
-    std::snprintf(clearance, sizeof clearance, "; worst clearance %.2f mm", 1e3 * tally.worst_clearance);
-  }
   console.say("checked " + std::to_string(checked) + " objects, " + std::to_string(tally.verdicts.size()) +
-              " grasps and paths again: " + std::to_string(tally.failed.size()) + " failed" + clearance);
+              " grasps and paths again: " + std::to_string(tally.failed.size()) + " failed" +
+              clearance_sentence(worst));
   console.document(result.dump());
   return tally.failed.empty() ? kDone : kNoAnswer;
 }

@@ -8,6 +8,7 @@
 #include "cli/stored.hpp"
 #include "core/require.hpp"
 #include "robot/load_robot.hpp"
+#include "robot/mesh_check.hpp"
 
 namespace opponens::cli {
 
@@ -21,9 +22,15 @@ robot::RobotDescription hand_of_motion(const storage::Record& record) {
 }
 
 NamedWorld load_world(const std::string& robot_file, const std::string& scene_file, const std::string& object) {
-  const auto robot_path = find_file(robot_file);
+  NamedRobot named = named_robot(robot_file);
   const auto scene_path = find_file(scene_file);
-  robot::RobotDescription description = robot::load_robot(robot_path);
+  robot::RobotDescription description = robot::load_robot(named.file, named.arm);
+  if (description.driven_arms.size() > 1) {
+    throw InputError("--robot " + robot_file + ": one arm grasps and moves; name it: " + named.file.string() + "#" +
+                     description.driven_arms[0] + " or #" + description.driven_arms[1]);
+  }
+  if (!description.driven_arms.empty()) named.arm = description.driven_arms[0];
+  if (description.hand_joints.empty()) throw InputError(robot_file + ": is an arm without a hand: nothing can grasp");
   robot::RobotDescription hand = robot::hand_of(description);
   robot::Scene scene = robot::load_scene(scene_path);
   const std::string name = object.empty() ? scene.object : object;
@@ -37,7 +44,7 @@ NamedWorld load_world(const std::string& robot_file, const std::string& scene_fi
           robot::RobotModel(std::move(hand)),
           std::move(scene),
           name,
-          world_parameters(robot_file, scene_file, name),
+          world_parameters(named, scene_file, name),
           std::move(files)};
 }
 
@@ -48,7 +55,7 @@ std::vector<std::string> NamedWorld::hand_links() const {
 }
 
 WorldKey NamedWorld::key() const {
-  WorldKey key{object, {}};
+  WorldKey key{object, recorded_arm(parameters.at("robot")), {}};
   for (const auto& file : files) key.files.insert(file_sha256(file));
   return key;
 }
@@ -59,12 +66,20 @@ std::vector<robot::BodyPair> NamedWorld::hand_object_pairs() const {
   return pairs;
 }
 
-std::vector<std::string> warnings_of(const NamedWorld& world, const robot::CollisionChecker& checker) {
-  std::vector<std::string> warnings = world.robot.description().notes;
+std::vector<std::string> warnings_of(const robot::RobotModel& robot, const robot::Scene& scene,
+                                     const robot::CollisionChecker& checker) {
+  std::vector<std::string> warnings = robot.description().notes;
+  warnings.insert(warnings.end(), scene.notes.begin(), scene.notes.end());
+  const std::vector<std::string> meshes = robot::mesh_warnings(scene);
+  warnings.insert(warnings.end(), meshes.begin(), meshes.end());
   for (const auto& name : checker.open_meshes()) {
     warnings.push_back(name + ": its mesh is open, so it is a surface: nothing is seen to lie inside it");
   }
   return warnings;
+}
+
+std::vector<std::string> warnings_of(const NamedWorld& world, const robot::CollisionChecker& checker) {
+  return warnings_of(world.robot, world.scene, checker);
 }
 
 void require_same_joints(const SynergySet& synergies, const robot::RobotModel& hand) {

@@ -39,8 +39,10 @@ robot::RobotDescription hand_of_motion(const storage::Record& record);
 /// Loads them; an empty object name takes the scene's own. Throws InputError in one sentence.
 NamedWorld load_world(const std::string& robot_file, const std::string& scene_file, const std::string& object);
 
-/// What the user should know about the loaded files, a sentence each: what was ignored or assumed while loading, and
-/// the open meshes, inside of which nothing counts as a collision.
+/// What the user should know about the loaded files, a sentence each: what was ignored or assumed while loading, what
+/// is wrong with the scene's meshes, and the open meshes, inside of which nothing counts as a collision.
+std::vector<std::string> warnings_of(const robot::RobotModel& robot, const robot::Scene& scene,
+                                     const robot::CollisionChecker& checker);
 std::vector<std::string> warnings_of(const NamedWorld& world, const robot::CollisionChecker& checker);
 
 /// Throws InputError unless the synergies are about this hand's joints, in its order.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "motion/edge_check.hpp"
 
+#include <array>
 #include <cmath>
 
 #include "core/require.hpp"
@@ -9,24 +10,74 @@
 
 namespace opponens::motion {
 
+namespace {
+
+constexpr double kConfirmShare = 10.0;  ///< an answer is asked again this much more densely
+
+/// The checked fractions of a motion in order: its end, then the inner ones by bisection.
+class CoarseToFine {
+ public:
+  CoarseToFine(double length, double resolution) {
+    require(std::isfinite(length), "first_invalid: configurations must be finite");
+    segments_ = static_cast<std::uint64_t>(std::ceil(length / resolution));
+    while ((std::uint64_t{1} << bits_) < segments_) ++bits_;
+  }
+
+  /// The next fraction in (0, 1]; nullopt after the last.
+  std::optional<double> next() {
+    if (k_ == 0) {
+      ++k_;
+      return 1.0;
+    }
+    for (; k_ < (std::uint64_t{1} << bits_); ++k_) {
+      std::uint64_t i = 0;  // k with its bits reversed
+      for (int bit = 0; bit < bits_; ++bit) i |= ((k_ >> bit) & 1U) << (bits_ - 1 - bit);
+      if (i >= segments_) continue;
+      ++k_;
+      return static_cast<double>(i) / static_cast<double>(segments_);
+    }
+    return std::nullopt;
+  }
+
+ private:
+  std::uint64_t segments_ = 0;
+  int bits_ = 0;
+  std::uint64_t k_ = 0;
+};
+
+/// from + 1 (to - from) may miss `to` by a rounding.
+Eigen::VectorXd between(const Eigen::VectorXd& q_from, const Eigen::VectorXd& q_to, double fraction) {
+  return fraction == 1.0 ? q_to : Eigen::VectorXd(q_from + fraction * (q_to - q_from));
+}
+
+}  // namespace
+
 std::optional<double> first_invalid(const Eigen::VectorXd& q_from, const Eigen::VectorXd& q_to, const Validity& valid,
                                     const Eigen::VectorXd& weights, double resolution, std::int64_t& checks) {
-  ++checks;
-  if (!valid(q_to)) return 1.0;
-  const double length = distance(weights, q_from, q_to);
-  require(std::isfinite(length), "first_invalid: configurations must be finite");
-  const auto segments = static_cast<std::uint64_t>(std::ceil(length / resolution));
-  const Eigen::VectorXd difference = q_to - q_from;
-  // Index i = k with its bits reversed, for k = 1, 2, ...: coarse to fine.
-  int bits = 0;
-  while ((std::uint64_t{1} << bits) < segments) ++bits;
-  for (std::uint64_t k = 1; k < (std::uint64_t{1} << bits); ++k) {
-    std::uint64_t i = 0;
-    for (int bit = 0; bit < bits; ++bit) i |= ((k >> bit) & 1U) << (bits - 1 - bit);
-    if (i >= segments) continue;
-    const double fraction = static_cast<double>(i) / static_cast<double>(segments);
+  CoarseToFine fractions(distance(weights, q_from, q_to), resolution);
+  while (const std::optional<double> fraction = fractions.next()) {
     ++checks;
-    if (!valid(q_from + fraction * difference)) return fraction;
+    if (!valid(between(q_from, q_to, *fraction))) return fraction;
+  }
+  return std::nullopt;
+}
+
+std::optional<double> first_invalid(const Eigen::VectorXd& q_from, const Eigen::VectorXd& q_to,
+                                    const robot::CollisionChecker& checker, const Eigen::VectorXd& weights,
+                                    double resolution, std::int64_t& checks) {
+  CoarseToFine fractions(distance(weights, q_from, q_to), resolution);
+  robot::ConfigurationBatch batch(robot::CollisionChecker::kTogether, q_to.size());
+  std::array<double, robot::CollisionChecker::kTogether> asked{};
+  std::optional<double> fraction = fractions.next();
+  while (fraction) {
+    int rows = 0;
+    for (; fraction && rows < batch.rows(); fraction = fractions.next()) {
+      asked[static_cast<std::size_t>(rows)] = *fraction;
+      batch.row(rows++) = between(q_from, q_to, *fraction).transpose();
+    }
+    if (rows < batch.rows()) batch.conservativeResize(rows, Eigen::NoChange);
+    checks += rows;
+    if (const auto row = checker.first_colliding(batch)) return asked[static_cast<std::size_t>(*row)];
   }
   return std::nullopt;
 }
@@ -54,12 +105,34 @@ World make_world(const Validity& valid, const Eigen::VectorXd& weights, double r
 }
 
 World make_world(const Validity& valid, const Eigen::VectorXd& weights, double resolution) {
-  return make_world(valid, weights, resolution, resolution / 10.0);
+  return make_world(valid, weights, resolution, resolution / kConfirmShare);
 }
 
 World make_world(const robot::CollisionChecker& checker, const robot::RobotModel& robot, double resolution) {
-  return make_world([&checker, &robot](const Eigen::VectorXd& q) { return robot.within_limits(q) && checker.free(q); },
-                    robot.weights(), resolution);
+  require(std::isfinite(resolution) && resolution > 0.0, "make_world: resolution must be positive and finite");
+  const auto at = [&checker, &robot](double spacing) -> MotionCheck {
+    return [&checker, &robot, spacing](const Eigen::VectorXd& q_from, const Eigen::VectorXd& q_to,
+                                       std::int64_t& checks) -> std::optional<double> {
+      if (!robot.within_limits(q_to)) {  // then all between is inside them too, since q_from is
+        ++checks;
+        return 1.0;
+      }
+      return first_invalid(q_from, q_to, checker, robot.weights(), spacing, checks);
+    };
+  };
+  World world;
+  world.first_invalid = at(resolution);
+  world.confirm = at(resolution / kConfirmShare);
+  world.free = [&checker, &robot](const Eigen::MatrixXd& batch, std::int64_t& checks) {
+    std::vector<bool> free = checker.free_rows(batch);
+    for (Eigen::Index row = 0; row < batch.rows(); ++row) {
+      const auto index = static_cast<std::size_t>(row);
+      free[index] = free[index] && robot.within_limits(batch.row(row).transpose());
+    }
+    checks += batch.rows();
+    return free;
+  };
+  return world;
 }
 
 }  // namespace opponens::motion

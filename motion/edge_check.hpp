@@ -24,13 +24,18 @@ using Validity = std::function<bool(const Eigen::VectorXd& q)>;
 std::optional<double> first_invalid(const Eigen::VectorXd& q_from, const Eigen::VectorXd& q_to, const Validity& valid,
                                     const Eigen::VectorXd& weights, double resolution, std::int64_t& checks);
 
+/// The same of freedom from collision, asked eight configurations at a time: all of an eight count as evaluated.
+std::optional<double> first_invalid(const Eigen::VectorXd& q_from, const Eigen::VectorXd& q_to,
+                                    const robot::CollisionChecker& checker, const Eigen::VectorXd& weights,
+                                    double resolution, std::int64_t& checks);
+
 /// A World that asks `valid` at the given spacing, and at confirm_resolution (default: a tenth of it) to confirm an
 /// answer; confirm_resolution = 0: no confirmation.
 World make_world(const Validity& valid, const Eigen::VectorXd& weights, double resolution, double confirm_resolution);
 World make_world(const Validity& valid, const Eigen::VectorXd& weights, double resolution);
 
-/// The robot's world: inside the joint limits, and free for the checker. Checker and robot are referred to and must
-/// outlive the world.
+/// The robot's world: inside the joint limits, and free for the checker, which is asked in batches. Checker and robot
+/// are referred to and must outlive the world.
 World make_world(const robot::CollisionChecker& checker, const robot::RobotModel& robot, double resolution);
 
 }  // namespace opponens::motion

@@ -89,18 +89,19 @@ Eigen::VectorXd join(const robot::RobotModel& robot, const Eigen::VectorXd& q_ar
   return q;
 }
 
-std::string reach(Grasp& grasp, const robot::RobotModel& robot, const robot::ArmKinematics& kinematics,
+std::string reach(Grasp& grasp, const robot::RobotModel& robot, const robot::InverseKinematics& kinematics,
                   const Eigen::Isometry3d& X_RO, const robot::CollisionChecker& free_space,
                   const robot::CollisionChecker& closing, double resolution, const ContactLimit& contact) {
   grasp.arm_solutions.clear();
-  const auto grasps = kinematics.solve(X_RO * grasp.X_OH);
-  const auto pregrasps = kinematics.solve(X_RO * grasp.X_OH_pregrasp);
-  if (grasps.empty() || pregrasps.empty()) return "no inverse kinematics";
+  const auto grasps = kinematics(X_RO * grasp.X_OH, {});
+  if (!grasps) return "no inverse kinematics";
+  const auto pregrasps = kinematics(X_RO * grasp.X_OH_pregrasp, *grasps);
+  if (!pregrasps) return "no inverse kinematics";
   const World world = closing_world(free_space, closing, robot, grasp.contacts, resolution, contact);
   const Eigen::VectorXd weights = robot.weights().segment(robot.arm().first, robot.arm().count);
   std::string pregrasp_reason;
   std::string closing_reason;
-  for (const Candidate& candidate : pair_branches(pregrasps, grasps, weights)) {
+  for (const Candidate& candidate : pair_branches(*pregrasps, *grasps, weights)) {
     const Eigen::VectorXd q_pregrasp = join(robot, candidate.arm.q_pregrasp, grasp.q_pregrasp);
     const Eigen::VectorXd q_grasp = join(robot, candidate.arm.q_grasp, grasp.q_grasp);
     if (!robot.within_limits(q_pregrasp) || !robot.within_limits(q_grasp)) {

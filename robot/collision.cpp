@@ -43,6 +43,8 @@ wide::Query wide_query(const wide::World& world, const ConfigurationBatch& batch
   return query;
 }
 
+static_assert(CollisionChecker::kTogether == wide::kLanes);
+
 }  // namespace
 
 struct CollisionChecker::World {
@@ -118,22 +120,31 @@ struct CollisionChecker::World {
     return true;
   }
 
-  /// Asks for rows [first, first + count) of a batch at once, count <= kLanes. Calls verdict(row, free) for each in
-  /// turn until it returns true.
-  template <typename Verdict>
-  void sweep_rows(const ConfigurationBatch& batch, int first, int count, const Verdict& verdict,
-                  CollisionCounts& counts) const {
+  /// What the first stage says of rows [first, first + count) of a batch, count <= kLanes; row first + i is lane i.
+  struct FirstStage {
+    std::span<const wide::Unknown> unknown;  ///< pairs that it cannot tell apart
+    unsigned lanes;                          ///< in which it says anything
+  };
+  /// Valid until the thread asks again.
+  FirstStage first_stage(const ConfigurationBatch& batch, int first, int count) const {
     static const std::array<float, 12> kUsual = wide_pose(Eigen::Isometry3d::Identity());
     thread_local wide::World::Buffers buffers;
     const wide::Query query = wide_query(fixed, batch, first, count, kUsual, zero);
     const int pairs = fixed.sweep(query, buffers, portable);
-    const std::span<const wide::Unknown> unknown(buffers.found.data(), static_cast<std::size_t>(pairs));
+    return {{buffers.found.data(), static_cast<std::size_t>(pairs)}, query.lanes};
+  }
+
+  /// Asks for such rows at once. Calls verdict(row, free) for each in turn until it returns true.
+  template <typename Verdict>
+  void sweep_rows(const ConfigurationBatch& batch, int first, int count, const Verdict& verdict,
+                  CollisionCounts& counts) const {
+    const FirstStage stage = first_stage(batch, first, count);
     counts.configurations += count;
     for (int row = first; row < first + count; ++row) {
       const Eigen::Map<const Eigen::VectorXd> q(batch.row(row).data(), batch.cols());
       const auto lane = static_cast<unsigned>(row - first);
-      const bool free = (query.lanes >> lane & 1U) != 0
-                            ? apart(constant, exact.X_WR, q) && settle(unknown, lane, exact.X_WR, q, counts.pairs)
+      const bool free = (stage.lanes >> lane & 1U) != 0
+                            ? apart(constant, exact.X_WR, q) && settle(stage.unknown, lane, exact.X_WR, q, counts.pairs)
                             : exact_free(exact.X_WR, q);
       if (verdict(row, free)) return;
     }
@@ -203,6 +214,22 @@ std::optional<int> CollisionChecker::first_colliding(const ConfigurationBatch& b
   };
   world_->sweep_batch(batch, keep, counts != nullptr ? *counts : own);
   return colliding;
+}
+
+std::vector<bool> CollisionChecker::cleared_rows(const ConfigurationBatch& batch) const {
+  const World& w = *world_;
+  w.require_batch(batch);
+  std::vector<bool> cleared(static_cast<std::size_t>(batch.rows()), w.constant.empty());
+  for (int first = 0; first < batch.rows(); first += wide::kLanes) {
+    const int count = std::min(wide::kLanes, static_cast<int>(batch.rows()) - first);
+    const World::FirstStage stage = w.first_stage(batch, first, count);
+    unsigned free = stage.lanes;
+    for (const wide::Unknown& pair : stage.unknown) free &= ~pair.lanes;
+    for (int lane = 0; lane < count; ++lane) {
+      if ((free >> lane & 1U) == 0) cleared[static_cast<std::size_t>(first + lane)] = false;
+    }
+  }
+  return cleared;
 }
 
 bool CollisionChecker::exact_free(const Eigen::Ref<const Eigen::VectorXd>& q) const {

@@ -41,6 +41,8 @@ struct CollisionCounts {
 /// are const and keep no state.
 class CollisionChecker {
  public:
+  static constexpr int kTogether = 8;  ///< rows that a batch is checked by
+
   /// touching: extra pairs that are not checked (link name, scene body name), e.g. the contacts of a grasp.
   CollisionChecker(const RobotModel& robot, const Scene& scene, std::vector<BodyPair> touching = {},
                    const CollisionSettings& settings = {});
@@ -56,6 +58,10 @@ class CollisionChecker {
   /// The first row that is not free. Rows are asked eight at a time: put those that decide first, as along a motion
   /// from coarse to fine.
   std::optional<int> first_colliding(const ConfigurationBatch& batch, CollisionCounts* counts = nullptr) const;
+
+  /// Rows that the first stage alone shows to be free; the others may be free too. What a check would cost if no pair
+  /// were ever unknown.
+  std::vector<bool> cleared_rows(const ConfigurationBatch& batch) const;
 
   /// free() by the truth alone: what tests compare with.
   bool exact_free(const Eigen::Ref<const Eigen::VectorXd>& q) const;

@@ -28,7 +28,7 @@ struct TriangleMesh {
   Eigen::Matrix3Xi triangles;               ///< [3 x F] vertex indices, counter-clockwise seen from outside
   std::string source;                       ///< file or shape it came from, for messages
   std::filesystem::path file;               ///< it was read from; empty: it was made here
-  std::shared_ptr<const SphereTree> cover;  ///< known already (cover_file.hpp); empty: made when it is needed
+  std::shared_ptr<const SphereTree> cover{};  ///< known already (cover_file.hpp); empty: made when it is needed
 };
 
 /// Meshes are immutable and shared: the finger links of a hand repeat the same 10,000 triangles.

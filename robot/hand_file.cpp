@@ -54,6 +54,11 @@ LinkGeometry read_link_geometry(const YamlValue& file) {
   value->fail("expected urdf or visual, found '" + value->text() + "'");
 }
 
+std::optional<std::filesystem::path> read_srdf_path(const YamlValue& file) {
+  const std::optional<YamlValue> value = file.find("srdf");
+  return value ? std::optional(value->path()) : std::nullopt;
+}
+
 std::vector<NamedValue> read_names(const YamlValue& list) {
   std::vector<NamedValue> names;
   std::set<std::string> seen;
@@ -86,7 +91,7 @@ std::vector<NamedValue> read_without_geometry(const YamlValue& file, UrdfSetting
 HandFile read_hand_file(const std::filesystem::path& hand_yaml) {
   const YamlValue file = YamlValue::load(hand_yaml);
   file.allow_keys({"urdf", "packages", "collision", "without_geometry", "palm_link", "joints", "tips", "contact_points",
-                   "mapping", "allowed_collisions"});
+                   "mapping", "allowed_collisions", "srdf"});
   const YamlValue palm = file.at("palm_link");
   HandFile hand{.urdf = file.at("urdf"),
                 .urdf_settings = {},
@@ -96,6 +101,7 @@ HandFile read_hand_file(const std::filesystem::path& hand_yaml) {
                 .tips = {},
                 .contact_points = {},
                 .allowed_collisions = {},
+                .srdf = read_srdf_path(file),
                 .mapping = file.find("mapping")};
   hand.urdf_settings.packages = read_packages(file);
   hand.urdf_settings.geometry = read_link_geometry(file);

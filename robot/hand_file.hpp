@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
@@ -33,6 +34,7 @@ struct HandFile {
   std::vector<NamedPoint> tips;
   std::vector<NamedPoint> contact_points;
   std::vector<std::pair<NamedValue, NamedValue>> allowed_collisions;
+  std::optional<std::filesystem::path> srdf;
   std::optional<YamlValue> mapping;
 };
 
@@ -42,6 +44,7 @@ HandFile read_hand_file(const std::filesystem::path& hand_yaml);
 /// Parts that hand.yaml and robot.yaml share.
 PackagePaths read_packages(const YamlValue& file);
 LinkGeometry read_link_geometry(const YamlValue& file);
+std::optional<std::filesystem::path> read_srdf_path(const YamlValue& file);
 std::vector<NamedValue> read_names(const YamlValue& list);
 /// The links of key without_geometry, whose names join the settings.
 std::vector<NamedValue> read_without_geometry(const YamlValue& file, UrdfSettings& settings);

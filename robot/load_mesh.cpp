@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <cstring>
 #include <fstream>
-#include <unordered_map>
 
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
@@ -60,10 +59,10 @@ void check_stl_size(const std::filesystem::path& file, std::uintmax_t bytes) {
                  " bytes, but the file has " + std::to_string(bytes));
 }
 
-/// Collects triangles; a vertex is new when its position differs in any bit from those before.
+/// Collects vertices and triangles as the file has them.
 class Collector {
  public:
-  Collector(const std::filesystem::path& file, const Eigen::Vector3d& scale) : file_(file), scale_(scale) {}
+  explicit Collector(const std::filesystem::path& file) : file_(file) {}
 
   void add_node(const aiScene& scene, const aiNode& node, const aiMatrix4x4& parent) {
     const aiMatrix4x4 X = parent * node.mTransformation;
@@ -71,64 +70,45 @@ class Collector {
     for (unsigned i = 0; i < node.mNumChildren; ++i) add_node(scene, *node.mChildren[i], X);
   }
 
-  std::shared_ptr<const TriangleMesh> finish() const {
-    if (triangles_.empty()) fail(file_, "has no triangles");
-    auto mesh = std::make_shared<TriangleMesh>();
-    mesh->source = file_.string();
-    mesh->file = file_;
-    mesh->vertices.resize(3, static_cast<Eigen::Index>(vertices_.size()));
-    mesh->triangles.resize(3, static_cast<Eigen::Index>(triangles_.size()));
+  TriangleMesh finish(const Eigen::Vector3d& scale) const {
+    TriangleMesh mesh;
+    mesh.source = file_.string();
+    mesh.file = file_;
+    mesh.vertices.resize(3, static_cast<Eigen::Index>(vertices_.size()));
+    mesh.triangles.resize(3, static_cast<Eigen::Index>(triangles_.size()));
     for (std::size_t i = 0; i < vertices_.size(); ++i) {
-      mesh->vertices.col(static_cast<Eigen::Index>(i)) = vertices_[i].cwiseProduct(scale_);
+      mesh.vertices.col(static_cast<Eigen::Index>(i)) = vertices_[i].cwiseProduct(scale);
     }
     for (std::size_t i = 0; i < triangles_.size(); ++i) {
-      mesh->triangles.col(static_cast<Eigen::Index>(i)) = triangles_[i];
+      mesh.triangles.col(static_cast<Eigen::Index>(i)) = triangles_[i];
     }
     // A mirroring scale turns the triangles inside out.
-    if (scale_.prod() < 0.0) mesh->triangles.row(1).swap(mesh->triangles.row(2));
+    if (scale.prod() < 0.0) mesh.triangles.row(1).swap(mesh.triangles.row(2));
     return mesh;
   }
 
  private:
-  using Key = std::array<float, 3>;
-  struct KeyHash {
-    std::size_t operator()(const Key& key) const {
-      std::array<std::uint32_t, 3> bits{};
-      std::memcpy(bits.data(), key.data(), sizeof(bits));
-      std::uint64_t hash = 0xcbf29ce484222325ULL;
-      for (const std::uint32_t b : bits) hash = (hash ^ b) * 0x100000001b3ULL;
-      return static_cast<std::size_t>(hash ^ (hash >> 32));
-    }
-  };
-
   void add_mesh(const aiMesh& mesh, const aiMatrix4x4& X) {
-    std::vector<int> index(mesh.mNumVertices);
-    for (unsigned i = 0; i < mesh.mNumVertices; ++i) index[i] = vertex(X * mesh.mVertices[i]);
+    const int first = static_cast<int>(vertices_.size());
+    for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
+      const aiVector3D v = X * mesh.mVertices[i];
+      vertices_.emplace_back(v.x, v.y, v.z);
+      if (!vertices_.back().allFinite())
+        fail(file_, "vertex " + std::to_string(vertices_.size() - 1) + " is not finite");
+    }
     for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
       const aiFace& face = mesh.mFaces[i];
       if (face.mNumIndices != 3) continue;  // points and lines; polygons were triangulated
       for (unsigned k = 0; k < 3; ++k) {
         if (face.mIndices[k] >= mesh.mNumVertices) fail(file_, "a triangle names a vertex that does not exist");
       }
-      const Eigen::Vector3i corners(index[face.mIndices[0]], index[face.mIndices[1]], index[face.mIndices[2]]);
-      // A triangle that uses a vertex twice has no area and its other edges cancel: without it the surface is the same.
-      if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) continue;
-      triangles_.push_back(corners);
+      triangles_.emplace_back(Eigen::Vector3i::Constant(first) + Eigen::Vector3i(static_cast<int>(face.mIndices[0]),
+                                                                                 static_cast<int>(face.mIndices[1]),
+                                                                                 static_cast<int>(face.mIndices[2])));
     }
   }
 
-  int vertex(const aiVector3D& v) {
-    const Key key{v.x + 0.0F, v.y + 0.0F, v.z + 0.0F};  // -0 becomes 0
-    const Eigen::Vector3d p(key[0], key[1], key[2]);
-    if (!p.allFinite()) fail(file_, "vertex " + std::to_string(vertices_.size()) + " is not finite");
-    const auto [position, added] = known_.try_emplace(key, static_cast<int>(vertices_.size()));
-    if (added) vertices_.push_back(p);
-    return position->second;
-  }
-
   std::filesystem::path file_;
-  Eigen::Vector3d scale_;
-  std::unordered_map<Key, int, KeyHash> known_;
   std::vector<Eigen::Vector3d> vertices_;
   std::vector<Eigen::Vector3i> triangles_;
 };
@@ -136,7 +116,13 @@ class Collector {
 }  // namespace
 
 std::shared_ptr<const TriangleMesh> load_mesh(const std::filesystem::path& file, const Eigen::Vector3d& scale) {
-  require(scale.allFinite() && scale.prod() != 0.0, "load_mesh: scale must be finite and not zero");
+  TriangleMesh mesh = merge_equal_vertices(read_mesh(file, scale));
+  if (mesh.triangles.cols() == 0) fail(file, "has no triangles");
+  return std::make_shared<const TriangleMesh>(std::move(mesh));
+}
+
+TriangleMesh read_mesh(const std::filesystem::path& file, const Eigen::Vector3d& scale) {
+  require(scale.allFinite() && scale.prod() != 0.0, "read_mesh: scale must be finite and not zero");
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) fail(file, "no such file");
   const std::uintmax_t bytes = std::filesystem::file_size(file, error);
@@ -154,9 +140,11 @@ std::shared_ptr<const TriangleMesh> load_mesh(const std::filesystem::path& file,
   if (scene == nullptr || scene->mRootNode == nullptr) {
     fail(file, std::string("cannot be read: ") + importer.GetErrorString());
   }
-  Collector collector(file, scale);
+  Collector collector(file);
   collector.add_node(*scene, *scene->mRootNode, aiMatrix4x4());
-  return collector.finish();
+  TriangleMesh mesh = collector.finish(scale);
+  if (mesh.triangles.cols() == 0) fail(file, "has no triangles");
+  return mesh;
 }
 
 }  // namespace opponens::robot

@@ -226,6 +226,16 @@ std::vector<int> component_seeds(const TriangleMesh& mesh) {
   return seeds;
 }
 
+std::vector<int> component_of_triangles(const TriangleMesh& mesh) {
+  int count = 0;
+  const std::vector<int> component = component_of_vertices(mesh, count);
+  std::vector<int> result;
+  for (Eigen::Index f = 0; f < mesh.triangles.cols(); ++f) {
+    result.push_back(component[static_cast<std::size_t>(mesh.triangles(0, f))]);
+  }
+  return result;
+}
+
 std::vector<TriangleMesh> components(const TriangleMesh& mesh) {
   int count = 0;
   const std::vector<int> component = component_of_vertices(mesh, count);

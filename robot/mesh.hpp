@@ -16,6 +16,13 @@ namespace opponens::robot {
 std::shared_ptr<const TriangleMesh> load_mesh(const std::filesystem::path& file,
                                               const Eigen::Vector3d& scale = Eigen::Vector3d::Ones());
 
+/// The same as written: vertices that are repeated, triangles without area, everything (for checks of the file).
+TriangleMesh read_mesh(const std::filesystem::path& file, const Eigen::Vector3d& scale = Eigen::Vector3d::Ones());
+
+/// Vertices whose coordinates are equal become one, numbered by their first appearance; triangles that then use a
+/// vertex twice are dropped: they have no area and their other edges cancel, so the surface is the same.
+TriangleMesh merge_equal_vertices(const TriangleMesh& mesh);
+
 /// Surface of revolution about z through the profile points (radius, height) m, bottom to top; closed at both ends.
 TriangleMesh revolve(const std::vector<std::pair<double, double>>& profile, int segments);
 
@@ -39,6 +46,9 @@ bool is_closed(const TriangleMesh& mesh);
 
 /// One vertex index per connected component.
 std::vector<int> component_seeds(const TriangleMesh& mesh);
+
+/// For each triangle the number of its component, in the order of component_seeds.
+std::vector<int> component_of_triangles(const TriangleMesh& mesh);
 
 /// The connected components as meshes of their own, in the order of component_seeds.
 std::vector<TriangleMesh> components(const TriangleMesh& mesh);

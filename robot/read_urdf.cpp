@@ -3,17 +3,17 @@
 #include "robot/read_urdf.hpp"
 
 #include <cmath>
-#include <fstream>
 #include <memory>
 #include <mutex>
 #include <numbers>
-#include <sstream>
 
 #include <console_bridge/console.h>
 #include <tinyxml.h>
 #include <urdf_parser/urdf_parser.h>
 
 #include "core/require.hpp"
+#include "robot/text_file.hpp"
+#include "robot/urdf_check.hpp"
 #include "robot/urdf_geometry.hpp"
 
 namespace opponens::robot {
@@ -37,15 +37,6 @@ class CapturedLog : public console_bridge::OutputHandler {
   std::string first_error_;
 };
 
-std::string read_text(const std::filesystem::path& file) {
-  if (std::filesystem::is_directory(file)) fail_urdf(file, "is a directory, expected a URDF file");
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) fail_urdf(file, "cannot be opened");
-  std::stringstream content;
-  content << stream.rdbuf();
-  return content.str();
-}
-
 urdf::ModelInterfaceSharedPtr parse(const std::filesystem::path& file, const std::string& text) {
   static std::mutex mutex;  // console_bridge's handler is one per process
   const std::lock_guard lock(mutex);
@@ -65,6 +56,8 @@ urdf::ModelInterfaceSharedPtr parse(const std::filesystem::path& file, const std
 struct Outline {
   std::vector<std::string> joints;     ///< in the file's order
   std::map<std::string, int> ignored;  ///< tag -> how often
+  std::vector<std::string> notes;      ///< shapes left out
+  std::string text;                    ///< the file without them
 };
 
 void count_ignored(const TiXmlElement& element, Outline& outline) {
@@ -100,15 +93,33 @@ void check_loops(const std::map<std::string, std::string>& parent_of, const std:
   }
 }
 
+/// No robot has as many links: the walks over the tree here and in urdfdom cost their square, or recurse.
+void check_size(const TiXmlElement& robot, const std::filesystem::path& file) {
+  constexpr int kMaxJoints = 2000;
+  int joints = 0;
+  for (const TiXmlElement* joint = robot.FirstChildElement("joint"); joint;
+       joint = joint->NextSiblingElement("joint")) {
+    if (++joints <= kMaxJoints) continue;
+    fail_urdf(file, "line " + std::to_string(joint->Row()) + ": more than " + std::to_string(kMaxJoints) + " joints");
+  }
+}
+
+std::string printed(const TiXmlDocument& document) {
+  TiXmlPrinter printer;
+  document.Accept(&printer);
+  return printer.Str();
+}
+
 Outline outline_of(const std::filesystem::path& file, const std::string& text) {
   TiXmlDocument document;
-  document.Parse(text.c_str());
-  if (document.Error()) {
-    fail_urdf(file, "line " + std::to_string(document.ErrorRow()) + ": not XML: " + document.ErrorDesc());
-  }
-  const TiXmlElement* robot = document.FirstChildElement("robot");
+  parse_xml(file, text, document);
+  TiXmlElement* const robot = document.FirstChildElement("robot");
   if (!robot) fail_urdf(file, "has no <robot> element");
+  check_size(*robot, file);
+  check_urdf_numbers(file, *robot);
   Outline outline;
+  outline.notes = drop_unknown_shapes(file, *robot);
+  outline.text = outline.notes.empty() ? text : printed(document);
   std::map<std::string, std::string> joint_of_child;
   std::map<std::string, std::string> parent_of;
   for (const TiXmlElement* joint = robot->FirstChildElement("joint"); joint;
@@ -229,9 +240,9 @@ void check_mimics(const RobotDescription& description, const std::filesystem::pa
 }  // namespace
 
 RobotDescription read_urdf(const std::filesystem::path& file, const UrdfSettings& settings) {
-  const std::string text = read_text(file);
+  const std::string text = read_text_file(file, "a URDF file");
   const Outline outline = outline_of(file, text);
-  const urdf::ModelInterfaceSharedPtr model = parse(file, text);
+  const urdf::ModelInterfaceSharedPtr model = parse(file, outline.text);
 
   RobotDescription description;
   description.name = model->getName();
@@ -240,11 +251,13 @@ RobotDescription read_urdf(const std::filesystem::path& file, const UrdfSettings
   append_tree(*model, children, file, description, model->getRoot()->name);
   check_mimics(description, file);
 
-  MeshCache cache;
+  ShapeReader shapes(file, settings);
   for (Link& link : description.links) {
     if (settings.without_geometry.contains(link.name)) continue;
-    link.collision = geometry_of(*model->links_.at(link.name), file, settings, cache);
+    link.collision = shapes.shapes_of(*model->links_.at(link.name));
   }
+  description.missing_meshes = shapes.missing();
+  description.notes.insert(description.notes.end(), outline.notes.begin(), outline.notes.end());
   for (const auto& [tag, count] : outline.ignored) {
     description.notes.push_back(file.filename().string() + ": <" + tag + "> ignored (" + std::to_string(count) + ")");
   }

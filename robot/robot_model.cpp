@@ -13,6 +13,9 @@ namespace opponens::robot {
 
 namespace {
 
+/// Where a joint stands that q does not drive.
+double rest_position(const Joint& joint) { return joint.rest.value_or(std::clamp(0.0, joint.lower, joint.upper)); }
+
 Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
   Eigen::Matrix3d m;
   m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
@@ -27,6 +30,7 @@ Shape scaled_shape(const Shape& shape, double factor) {
   }
   TriangleMesh mesh = *std::get<std::shared_ptr<const TriangleMesh>>(shape);
   mesh.vertices *= factor;
+  mesh.cover = nullptr;  // it is of the other size
   return std::make_shared<const TriangleMesh>(std::move(mesh));
 }
 
@@ -43,6 +47,8 @@ void check_tree(const RobotDescription& description) {
             "link '" + description.links[static_cast<std::size_t>(i) + 1].name + "' names another joint");
     require(joint.type == JointType::fixed || std::abs(joint.axis.norm() - 1.0) < 1e-9,
             "joint '" + joint.name + "' has an axis that is not of unit length");
+    require(!joint.rest || (*joint.rest >= joint.lower && *joint.rest <= joint.upper),
+            "joint '" + joint.name + "' rests outside its limits");
   }
 }
 
@@ -58,6 +64,7 @@ RobotDescription scaled(const RobotDescription& description, double factor) {
       joint.upper *= factor;
       joint.velocity *= factor;
       if (joint.mimic) joint.mimic->offset *= factor;
+      if (joint.rest) *joint.rest *= factor;
     }
   }
   for (Link& link : result.links) {
@@ -68,6 +75,10 @@ RobotDescription scaled(const RobotDescription& description, double factor) {
   }
   for (SurfacePoint& point : result.tips) point.p_L *= factor;
   for (SurfacePoint& point : result.contact_points) point.p_L *= factor;
+  for (ArmDescription& arm : result.arms) {
+    for (SurfacePoint& point : arm.tips) point.p_L *= factor;
+    for (SurfacePoint& point : arm.contact_points) point.p_L *= factor;
+  }
   return result;
 }
 
@@ -81,6 +92,7 @@ RobotModel::RobotModel(RobotDescription description) : description_(std::move(de
     turns_.push_back({fixed, fixed * axis, fixed * axis * axis});
   }
   palm_ = description_.palm_link.empty() ? 0 : link_index(description_.palm_link);
+  index_arms();
 }
 
 void RobotModel::index_joints() {
@@ -95,6 +107,7 @@ void RobotModel::index_joints() {
   lower_.resize(d);
   upper_.resize(d);
   velocity_.resize(d);
+  rest_.resize(d);
   std::map<std::string, const Joint*> by_name;
   for (const Joint& joint : description_.joints) by_name[joint.name] = &joint;
   for (Eigen::Index i = 0; i < d; ++i) {
@@ -107,8 +120,39 @@ void RobotModel::index_joints() {
     lower_[i] = joint->lower;
     upper_[i] = joint->upper;
     velocity_[i] = joint->velocity;
+    rest_[i] = rest_position(*joint);
     found->second = nullptr;
   }
+}
+
+void RobotModel::index_arms() {
+  const std::vector<std::string>& driven = description_.driven_arms;
+  if (driven.empty()) arms_.push_back({"", arm_, hand_, palm_});
+  int first_arm = 0;
+  int first_hand = hand_.first;
+  for (const std::string& name : driven) {
+    const auto found = std::find_if(description_.arms.begin(), description_.arms.end(),
+                                    [&](const ArmDescription& arm) { return arm.name == name; });
+    require(found != description_.arms.end(), "no arm '" + name + "' in robot '" + description_.name + "'");
+    arms_.push_back({name,
+                     {name + "/arm", found->arm_joints, first_arm, static_cast<int>(found->arm_joints.size())},
+                     {name + "/hand", found->hand_joints, first_hand, static_cast<int>(found->hand_joints.size())},
+                     link_index(found->palm_link)});
+    first_arm += arms_.back().arm.count;
+    first_hand += arms_.back().hand.count;
+  }
+  for (const PlanningGroup& group : groups()) {
+    require(group.first + group.count <= dof() &&
+                std::equal(group.joint_names.begin(), group.joint_names.end(), joint_names_.begin() + group.first),
+            "the joints of group '" + group.name + "' are not where q holds them");
+  }
+}
+
+std::vector<PlanningGroup> RobotModel::groups() const {
+  std::vector<PlanningGroup> groups;
+  for (const DrivenArm& arm : arms_) groups.push_back(arm.arm);
+  for (const DrivenArm& arm : arms_) groups.push_back(arm.hand);
+  return groups;
 }
 
 /// A driven joint's own limits hold too. Equal ones (in a URDF: left out, both 0) state none.
@@ -141,8 +185,8 @@ void RobotModel::resolve_drives() {
     }
     if (const auto found = actuated.find(source->name); found != actuated.end()) {
       drive.index = found->second;
-    } else if (source->type != JointType::fixed) {  // not driven: rests at the limit nearest to zero
-      drive.offset += drive.multiplier * std::clamp(0.0, source->lower, source->upper);
+    } else if (source->type != JointType::fixed) {  // not driven: rests
+      drive.offset += drive.multiplier * rest_position(*source);
     }
     restrict_driver(joint, drive);
     drives_.push_back(drive);
@@ -154,6 +198,17 @@ int RobotModel::link_index(const std::string& name) const {
     if (description_.links[i].name == name) return static_cast<int>(i);
   }
   throw std::invalid_argument("no link '" + name + "' in robot '" + description_.name + "'");
+}
+
+Eigen::VectorXd RobotModel::joint_positions(const Eigen::Ref<const Eigen::VectorXd>& q) const {
+  require(q.size() == dof(), "joint_positions: configuration has " + std::to_string(q.size()) + " joints");
+  Eigen::VectorXd positions(static_cast<Eigen::Index>(drives_.size()));
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    const Drive& drive = drives_[i];
+    positions[static_cast<Eigen::Index>(i)] =
+        (drive.index < 0 ? 0.0 : drive.multiplier * q[drive.index]) + drive.offset;
+  }
+  return positions;
 }
 
 std::vector<Eigen::Isometry3d> RobotModel::link_poses(const Eigen::Ref<const Eigen::VectorXd>& q) const {

@@ -26,11 +26,14 @@ struct Scene {
   Eigen::VectorXd start;                  ///< [d] rad start configuration by the robot's joint order; empty: not given
   std::vector<std::string> start_joints;  ///< names for start
   std::vector<std::filesystem::path> files;  ///< it was read from, meshes included
+  std::vector<std::string> notes;            ///< what of an imported scene was ignored or assumed
 
   const SceneBody& body(const std::string& name) const;  ///< throws std::invalid_argument when absent
 };
 
-/// Reads our scene YAML (docs/scene_files.md). Throws InputError naming file, body and field.
+/// Reads a scene in any of the forms of docs/scene_files.md and tells which by itself: our YAML, a MoveIt planning
+/// scene in YAML (MotionBenchMaker's scenes are such), or MoveIt's .scene text. Throws InputError naming file, body and
+/// field.
 Scene load_scene(const std::filesystem::path& scene_yaml);
 
 }  // namespace opponens::robot

@@ -1,17 +1,20 @@
 // SPDX-FileCopyrightText: 2026 The opponens authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "core/require.hpp"
+#include "robot/hand_file.hpp"
 #include "robot/mesh.hpp"
+#include "robot/planning_scene_file.hpp"
 #include "robot/scene.hpp"
-#include "robot/yaml_file.hpp"
+#include "robot/scene_text_file.hpp"
+#include "robot/scene_values.hpp"
 
 namespace opponens::robot {
 
@@ -19,44 +22,12 @@ namespace {
 
 constexpr int kMaxSegments = 4096;
 
-double positive(const YamlValue& value) {
-  const double number = value.number();
-  if (number <= 0.0) value.fail("expected a positive number, found '" + value.text() + "'");
-  return number;
-}
-
-std::string name_of(const YamlValue& value) {
-  std::string name = value.text();
-  if (name.empty()) value.fail("expected a name, found an empty text");
-  return name;
-}
-
 int segments_of(const YamlValue& value) {
   const double number = value.number();
   if (number < 3.0 || number > kMaxSegments || number != std::floor(number)) {
     value.fail("expected a whole number from 3 to " + std::to_string(kMaxSegments) + ", found '" + value.text() + "'");
   }
   return static_cast<int>(number);
-}
-
-/// xyz (m) with rpy (rad, fixed axes) or quaternion (w, x, y, z), each optional.
-Eigen::Isometry3d pose_of(const YamlValue& value) {
-  value.allow_keys({"xyz", "rpy", "quaternion"});
-  Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
-  const std::optional<YamlValue> quaternion = value.find("quaternion");
-  if (const auto rpy = value.find("rpy")) {
-    if (quaternion) value.fail("has both rpy and quaternion, expected one of them");
-    X = pose_from_xyz_rpy(Eigen::Vector3d::Zero(), rpy->numbers(3));
-  }
-  if (quaternion) {
-    const Eigen::Vector4d wxyz = quaternion->numbers(4);
-    if (std::abs(wxyz.norm() - 1.0) > 1e-3) {
-      quaternion->fail("expected a unit quaternion (w, x, y, z), its norm is " + std::to_string(wxyz.norm()));
-    }
-    X.linear() = Eigen::Quaterniond(wxyz[0], wxyz[1], wxyz[2], wxyz[3]).normalized().toRotationMatrix();
-  }
-  if (const auto xyz = value.find("xyz")) X.translation() = xyz->numbers(3);
-  return X;
 }
 
 Shape box_of(const YamlValue& value) {
@@ -153,8 +124,42 @@ SceneBody body_of(const YamlValue& value, Meshes& known) {
   return body;
 }
 
+bool has_body(const Scene& scene, const std::string& name) {
+  return std::any_of(scene.bodies.begin(), scene.bodies.end(), [&](const SceneBody& b) { return b.name == name; });
+}
+
+/// The file that the key `import` names, or an empty scene.
+Scene imported_by(const YamlValue& root) {
+  const auto import = root.find("import");
+  if (!import) {
+    if (const auto packages = root.find("packages"))
+      packages->fail("is for the meshes of an imported scene (key import)");
+    return {};
+  }
+  const std::filesystem::path file = import->path();
+  if (is_scene_text(file)) return load_scene_text(file);
+  const YamlValue content = YamlValue::load(file);
+  if (is_planning_scene(content)) return read_planning_scene(content, read_packages(root));
+  import->fail("'" + import->text() + "' is neither a planning scene (key world) nor a .scene file");
+}
+
+/// The bodies that a scene of ours adds to those it may have imported.
+void read_bodies(const YamlValue& root, Scene& scene) {
+  const auto bodies = root.has("import") ? root.find("bodies") : std::optional(root.at("bodies"));
+  if (!bodies) return;
+  Meshes known;
+  for (const YamlValue& item : bodies->items()) {
+    SceneBody body = body_of(item, known);
+    if (has_body(scene, body.name)) item.at("name").fail("there are two bodies '" + body.name + "'");
+    append_mesh_files(body.geometry, scene.files);
+    scene.bodies.push_back(std::move(body));
+  }
+}
+
+/// Joint positions by name; they replace those of an imported scene.
 void read_start(const YamlValue& value, Scene& scene) {
   std::vector<double> positions;
+  scene.start_joints.clear();
   for (const auto& [joint, position] : value.entries()) {
     scene.start_joints.push_back(joint);
     positions.push_back(position.number());
@@ -165,27 +170,22 @@ void read_start(const YamlValue& value, Scene& scene) {
 }  // namespace
 
 Scene load_scene(const std::filesystem::path& scene_yaml) {
+  if (is_scene_text(scene_yaml)) return load_scene_text(scene_yaml);
   const YamlValue root = YamlValue::load(scene_yaml);
-  root.allow_keys({"name", "robot_base", "bodies", "object", "support", "start"});
-  Scene scene;
+  if (is_planning_scene(root)) return read_planning_scene(root, {});
+  root.allow_keys({"name", "import", "packages", "robot_base", "bodies", "object", "support", "start"});
+  Scene scene = imported_by(root);
   scene.name = name_of(root.at("name"));
   if (const auto base = root.find("robot_base")) scene.X_WR = pose_of(*base);
-  Meshes known;
-  std::set<std::string> names;
-  for (const YamlValue& item : root.at("bodies").items()) {
-    SceneBody body = body_of(item, known);
-    if (!names.insert(body.name).second) item.at("name").fail("there are two bodies '" + body.name + "'");
-    scene.bodies.push_back(std::move(body));
-  }
+  read_bodies(root, scene);
   for (auto [key, field] : {std::pair{"object", &scene.object}, std::pair{"support", &scene.support}}) {
     const auto value = root.find(key);
     if (!value) continue;
     *field = name_of(*value);
-    if (names.count(*field) == 0) value->fail("'" + *field + "' is not a body of the scene");
+    if (!has_body(scene, *field)) value->fail("'" + *field + "' is not a body of the scene");
   }
   if (const auto start = root.find("start")) read_start(*start, scene);
-  scene.files.push_back(scene_yaml);
-  for (const SceneBody& body : scene.bodies) append_mesh_files(body.geometry, scene.files);
+  scene.files.insert(scene.files.begin(), scene_yaml);
   return scene;
 }
 

@@ -5,13 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <set>
-#include <sstream>
 
 #include <yaml-cpp/yaml.h>
 
 #include "core/require.hpp"
+#include "robot/text_file.hpp"
 
 namespace opponens::robot {
 
@@ -49,13 +48,9 @@ YamlValue::YamlValue(std::shared_ptr<const std::filesystem::path> file, std::str
     : file_(std::move(file)), field_(std::move(field)), node_(std::make_shared<YAML::Node>(node)) {}
 
 YamlValue YamlValue::load(const std::filesystem::path& file) {
-  if (std::filesystem::is_directory(file)) throw InputError(file.string() + ": is a directory, expected a YAML file");
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw InputError(file.string() + ": cannot be opened");
-  std::stringstream content;
-  content << stream.rdbuf();
+  const std::string content = read_text_file(file, "a YAML file");
   try {
-    return {std::make_shared<std::filesystem::path>(file), "", YAML::Load(content.str())};
+    return {std::make_shared<std::filesystem::path>(file), "", YAML::Load(content)};
   } catch (const YAML::Exception& error) {
     const std::string line = error.mark.is_null() ? "" : ":" + std::to_string(error.mark.line + 1);
     throw InputError(file.string() + line + ": is not YAML: " + error.msg);

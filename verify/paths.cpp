@@ -6,13 +6,12 @@
 #include <cmath>
 
 #include "core/require.hpp"
-#include "verify/collision_bodies.hpp"
 #include "verify/palm_pose.hpp"
 
 namespace opponens::verify {
 namespace {
 
-constexpr int kReportedCollisions = 10;
+constexpr std::size_t kReportedPairs = 10;
 
 void check_configuration(const JointPath& path, Eigen::Index row, const Eigen::VectorXd& expected,
                          const std::string& name, double tolerance, Verdict& verdict) {
@@ -59,84 +58,66 @@ void check_limits(const JointPath& path, const robot::RobotModel& robot, double 
   }
 }
 
-/// The walk along the path.
-class Walk {
- public:
-  Walk(const PathClaim& claim, const robot::RobotModel& robot, const robot::Scene& scene,
-       const PathCheckSettings& settings, Verdict& verdict)
-      : claim_(claim), settings_(settings), verdict_(verdict), bodies_(robot, scene) {
-    for (const std::string& link : claim.contact_links) contacts_.emplace(link, claim.object);
-  }
-
-  void visit(const Eigen::VectorXd& q, const std::string& where, bool closing, bool with_clearance) {
-    bodies_.set(q);
-    ++verdict_.checked;
-    bool free = true;
-    for (const CollisionBodies::Pair& pair : bodies_.colliding()) {
-      if (closing && contacts_.count(pair) == 1) {
-        check_depth(pair, where);
-        continue;
-      }
-      free = false;
-      note_clearance({0.0, pair});
-      report("collision of " + pair.first + " and " + pair.second + " " + where);
-    }
-    if (free && with_clearance)
-      note_clearance(bodies_.clearance(closing ? contacts_ : none_, verdict_.worst_clearance));
-  }
-
- private:
-  void note_clearance(const CollisionBodies::Clearance& found) {
-    if (found.distance >= verdict_.worst_clearance) return;
-    verdict_.worst_clearance = found.distance;
-    verdict_.worst_pair = found.pair;
-  }
-
-  void check_depth(const CollisionBodies::Pair& pair, const std::string& where) {
-    const double depth = bodies_.penetration(pair.first, pair.second);
-    verdict_.worst_contact_penetration = std::max(verdict_.worst_contact_penetration, depth);
-    if (depth > settings_.max_penetration) {
-      report("contact of " + pair.first + " and " + pair.second + " is " + number(1e3 * depth) + " mm deep " + where);
-    }
-  }
-
-  void report(const std::string& reason) {
-    verdict_.ok = false;
-    if (reported_++ < kReportedCollisions) verdict_.reasons.push_back(reason);
-  }
-
-  const PathClaim& claim_;
-  const PathCheckSettings& settings_;
-  Verdict& verdict_;
-  CollisionBodies bodies_;
-  std::set<CollisionBodies::Pair> contacts_;
-  const std::set<CollisionBodies::Pair> none_;
-  int reported_ = 0;
-};
-
-double weighted_length(const Eigen::VectorXd& weights, const Eigen::VectorXd& step) {
-  return std::sqrt((weights.array() * step.array().square()).sum());
+std::string text_of(const Place& place) {
+  if (place.fraction == 1.0) return "at waypoint " + std::to_string(place.waypoint);
+  return "between waypoints " + std::to_string(place.waypoint - 1) + " and " + std::to_string(place.waypoint) + " at " +
+         number(place.fraction);
 }
 
-void walk_path(const JointPath& path, const PathClaim& claim, const robot::RobotModel& robot,
-               const PathCheckSettings& settings, Walk& walk) {
-  const auto every =
-      static_cast<Eigen::Index>(std::max(1.0, std::round(settings.clearance_spacing / settings.spacing)));
-  walk.visit(path.waypoints.row(0).transpose(), "at waypoint 0", claim.closing_from == 0, true);
-  for (Eigen::Index i = 1; i < path.waypoints.rows(); ++i) {
-    const Eigen::VectorXd from = path.waypoints.row(i - 1).transpose();
-    const Eigen::VectorXd step = path.waypoints.row(i).transpose() - from;
-    const auto count = std::max<Eigen::Index>(
-        1, static_cast<Eigen::Index>(std::ceil(weighted_length(robot.weights(), step) / settings.spacing)));
-    const bool closing = claim.closing_from >= 0 && i > claim.closing_from;
-    const std::string between = "between waypoints " + std::to_string(i - 1) + " and " + std::to_string(i) + " at ";
-    for (Eigen::Index k = 0; k < count; ++k) {
-      // The middles of the parts: not the fractions that a planner's own check has been to.
-      const double fraction = (static_cast<double>(k) + 0.5) / static_cast<double>(count);
-      walk.visit(from + fraction * step, between + number(fraction), closing, k % every == 0);
-    }
-    walk.visit(path.waypoints.row(i).transpose(), "at waypoint " + std::to_string(i), closing, true);
+std::string millimetres(double metres) { return number(1e3 * metres) + " mm"; }
+
+using NamePair = PathProof::NamePair;
+
+std::string reason_of(const NamePair& pair, const PathProof::Found& found, double clearance) {
+  const std::string names = pair.first + " and " + pair.second;
+  const std::string where = std::string(" ") + text_of(found.place);
+  if (found.distance == 0.0) return "collision of " + names + where;
+  if (found.distance < clearance) {
+    return names + " are " + millimetres(found.distance) + " apart" + where + ", less than " + millimetres(clearance);
   }
+  return names + " are " + millimetres(found.distance) + " apart" + where + ", but " + millimetres(clearance) +
+         " cannot be proven around there";
+}
+
+std::string reason_of(const NamePair& pair, const PathProof::Contact& contact, double limit) {
+  const std::string text = "contact of " + pair.first + " and " + pair.second + " is " + millimetres(contact.attained) +
+                           " deep " + text_of(contact.place);
+  if (contact.attained > limit) return text + ", more than " + millimetres(limit);
+  return text + ", but " + millimetres(limit) + " cannot be proven for all of the closing segment";
+}
+
+void judge(const PathProof& proof, const ProofSettings& settings, Verdict& verdict) {
+  std::vector<std::string> reasons;
+  for (const auto& [pair, found] : proof.found()) {
+    if (found.distance < verdict.worst_clearance) {
+      verdict.worst_clearance = found.distance;
+      verdict.worst_pair = pair;
+      verdict.worst_place = text_of(found.place);
+    }
+    if (found.distance < settings.clearance || !found.proven) {
+      reasons.push_back(reason_of(pair, found, settings.clearance));
+    }
+  }
+  verdict.proven_clearance = proof.proven_clearance();
+  for (const auto& [pair, contact] : proof.contacts()) {
+    verdict.worst_contact_penetration = std::max(verdict.worst_contact_penetration, contact.attained);
+    verdict.proven_contact_penetration = std::max(verdict.proven_contact_penetration, contact.proven);
+    if (std::max(contact.attained, contact.proven) > settings.max_penetration) {
+      reasons.push_back(reason_of(pair, contact, settings.max_penetration));
+    }
+  }
+  verdict.checked = proof.configurations();
+  verdict.distances = proof.distances();
+  verdict.ok = verdict.ok && reasons.empty();
+  if (reasons.size() > kReportedPairs) reasons.resize(kReportedPairs);
+  for (std::string& reason : reasons) verdict.reasons.push_back(std::move(reason));
+}
+
+void walk_path(const JointPath& path, const PathClaim& claim, PathProof& proof) {
+  const auto closing = [&](Eigen::Index i) { return claim.closing_from >= 0 && i > claim.closing_from; };
+  const Eigen::MatrixXd q = path.waypoints.transpose();
+  for (Eigen::Index i = 0; i < q.cols(); ++i) proof.visit(q.col(i), static_cast<int>(i), closing(i), i == 0);
+  for (Eigen::Index i = 1; i < q.cols(); ++i) proof.prove(q.col(i - 1), q.col(i), static_cast<int>(i), closing(i));
 }
 
 void check_ends(const JointPath& path, const PathClaim& claim, const robot::RobotModel& robot,
@@ -159,17 +140,21 @@ void check_ends(const JointPath& path, const PathClaim& claim, const robot::Robo
 
 }  // namespace
 
-Verdict check_path(const JointPath& path, const PathClaim& claim, const robot::RobotModel& robot,
-                   const robot::Scene& scene, const PathCheckSettings& settings) {
-  require(settings.spacing > 0.0 && settings.clearance_spacing >= settings.spacing && settings.max_penetration >= 0.0 &&
-              settings.tolerance >= 0.0 && settings.pose_tolerance >= 0.0,
-          "PathCheckSettings: spacing must be positive, clearance_spacing at least that, the others >= 0");
+PathChecker::PathChecker(const robot::RobotModel& robot, const robot::Scene& scene)
+    : robot_(robot), scene_(scene), bound_(robot), bodies_(robot, scene) {}
+
+Verdict PathChecker::check(const JointPath& path, const PathClaim& claim, const PathCheckSettings& settings) {
+  require(settings.tolerance >= 0.0 && settings.pose_tolerance >= 0.0,
+          "PathCheckSettings: tolerances must not be negative");
   Verdict verdict;
-  if (!check_form(path, claim, robot, verdict)) return verdict;
-  check_ends(path, claim, robot, scene, settings, verdict);
-  check_limits(path, robot, std::max(settings.tolerance, 1e-9), verdict);
-  Walk walk(claim, robot, scene, settings, verdict);
-  walk_path(path, claim, robot, settings, walk);
+  if (!check_form(path, claim, robot_, verdict)) return verdict;
+  check_ends(path, claim, robot_, scene_, settings, verdict);
+  check_limits(path, robot_, std::max(settings.tolerance, 1e-9), verdict);
+  std::set<NamePair> contacts;
+  for (const std::string& link : claim.contact_links) contacts.emplace(link, claim.object);
+  PathProof proof(robot_, bound_, bodies_, contacts, settings.proof);
+  walk_path(path, claim, proof);
+  judge(proof, settings.proof, verdict);
   return verdict;
 }
 

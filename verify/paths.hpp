@@ -10,18 +10,19 @@
 #include <Eigen/Geometry>
 
 #include "core/path.hpp"
+#include "robot/motion_bound.hpp"
 #include "robot/robot_model.hpp"
 #include "robot/scene.hpp"
+#include "verify/bodies.hpp"
+#include "verify/path_proof.hpp"
 #include "verify/verdict.hpp"
 
 namespace opponens::verify {
 
 struct PathCheckSettings {
-  double spacing = 0.002;           ///< rad, of checked configurations in the weighted metric
-  double clearance_spacing = 0.02;  ///< rad, of those whose clearance is measured too; a multiple of spacing
-  double max_penetration = 0.001;   ///< m, of the closing segment's contacts
-  double tolerance = 1e-9;          ///< rad, of start, pre-grasp and grasp
-  double pose_tolerance = 1e-6;     ///< m and rad, of the palm at pre-grasp and grasp
+  ProofSettings proof;
+  double tolerance = 1e-9;       ///< rad, of start, pre-grasp and grasp
+  double pose_tolerance = 1e-6;  ///< m and rad, of the palm at pre-grasp and grasp
 };
 
 /// What a path claims.
@@ -36,13 +37,23 @@ struct PathClaim {
   std::set<std::string> contact_links;  ///< of the grasp's stored contacts: may touch the object while closing
 };
 
-/// Re-checks a path by plain dense sampling with a collision loop of its own (FCL objects made here from the same robot
-/// and scene, bounding boxes first, solids by ray crossings): joint names and limits, ends, the palm's poses there,
-/// every waypoint and the configurations in the middles of equal parts of at most `spacing` (so between those of a
-/// planner that checked at the parts' ends), and on the closing segment the depth of the allowed contacts.
-/// worst_clearance is the least distance of any pair that must not touch, over the configurations at
-/// clearance_spacing; 0 when anything collides. At most ten collisions are reported one by one.
-Verdict check_path(const JointPath& path, const PathClaim& claim, const robot::RobotModel& robot,
-                   const robot::Scene& scene, const PathCheckSettings& settings = {});
+/// Re-checks paths of one robot in one scene, whose trees are built once: joint names and limits, ends, the palm's
+/// poses there, and, for the whole motion and not at samples of it, that every pair of bodies that must not touch keeps
+/// the clearance and that the closing segment's contacts stay below their depth (PathProof). What the proof cannot show
+/// fails. One reason per pair of bodies, at its worst place; at most ten of them.
+class PathChecker {
+ public:
+  /// Both are referred to and must outlive it.
+  PathChecker(const robot::RobotModel& robot, const robot::Scene& scene);
+
+  /// Not from several threads at once: it moves the bodies.
+  Verdict check(const JointPath& path, const PathClaim& claim, const PathCheckSettings& settings = {});
+
+ private:
+  const robot::RobotModel& robot_;
+  const robot::Scene& scene_;
+  robot::MotionBound bound_;
+  Bodies bodies_;
+};
 
 }  // namespace opponens::verify

@@ -18,9 +18,23 @@
 namespace opponens::verify {
 namespace {
 
-robot::TriangleMesh triangles_of(const robot::Shape& shape) {
-  const auto* mesh = std::get_if<std::shared_ptr<const robot::TriangleMesh>>(&shape);
-  return mesh != nullptr ? **mesh : robot::triangulate(shape, 64);
+using MeshPointer = std::shared_ptr<const robot::TriangleMesh>;
+
+MeshPointer triangles_of(const robot::Shape& shape) {
+  if (const auto* mesh = std::get_if<MeshPointer>(&shape)) return *mesh;
+  return std::make_shared<const robot::TriangleMesh>(circumscribed(shape));
+}
+
+/// Least distance of the planes of the faces from the origin; only of those along z when `sides`.
+double inner_radius(const robot::TriangleMesh& mesh, bool sides) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& triangle : mesh.triangles.colwise()) {
+    const Eigen::Vector3d a = mesh.vertices.col(triangle[0]);
+    const Eigen::Vector3d n =
+        (mesh.vertices.col(triangle[1]) - a).cross(Eigen::Vector3d(mesh.vertices.col(triangle[2]) - a)).normalized();
+    if (!sides || std::abs(n.z()) < 0.5) least = std::min(least, n.dot(a));
+  }
+  return least;
 }
 
 /// Directions without a relation to axes or to each other; the next is tried when a ray grazes an edge.
@@ -31,18 +45,37 @@ const std::array<Eigen::Vector3d, 6> kDirections = {
 
 }  // namespace
 
-Solid::Solid(const robot::Shape& shape) : mesh_(triangles_of(shape)), closed_(robot::is_closed(mesh_)) {
-  for (const auto& vertex : mesh_.vertices.colwise()) bounds_.extend(vertex);
-  const std::vector<int> seeds = robot::component_seeds(mesh_);
-  component_points_ = mesh_.vertices(Eigen::all, seeds);
+robot::TriangleMesh circumscribed(const robot::Shape& shape, double tolerance) {
+  const auto* sphere = std::get_if<robot::Sphere>(&shape);
+  const auto* cylinder = std::get_if<robot::Cylinder>(&shape);
+  if (sphere == nullptr && cylinder == nullptr) return robot::triangulate(shape);
+  const double radius = sphere != nullptr ? sphere->radius : cylinder->radius;
+  constexpr int kMostSegments = 512;
+  // 1 - cos(pi / n) of the radius is missing around, and about as much again along a sphere's meridians.
+  const double estimate = std::numbers::pi * std::sqrt(radius / tolerance * (sphere != nullptr ? 1.0 : 0.5));
+  for (int segments = std::clamp(static_cast<int>(estimate), 16, kMostSegments);; segments += 2) {
+    robot::TriangleMesh mesh = robot::triangulate(shape, segments);
+    // Two parts in 1e12 for what rounding takes away.
+    const double factor = radius / inner_radius(mesh, sphere == nullptr) * (1.0 + 2e-12);
+    if (radius * (factor - 1.0) > tolerance && segments < kMostSegments) continue;
+    mesh.vertices.topRows<2>() *= factor;
+    if (sphere != nullptr) mesh.vertices.row(2) *= factor;
+    return mesh;
+  }
 }
 
-Solid::Crossing Solid::crossing(Eigen::Index triangle, const Eigen::Vector3d& p,
-                                const Eigen::Vector3d& direction) const {
+Solid::Solid(const robot::Shape& shape) : mesh_(triangles_of(shape)), tree_(*mesh_), closed_(robot::is_closed(*mesh_)) {
+  for (const auto& vertex : mesh_->vertices.colwise()) bounds_.extend(vertex);
+  const std::vector<int> seeds = robot::component_seeds(*mesh_);
+  component_points_ = mesh_->vertices(Eigen::all, seeds);
+}
+
+Solid::Crossing Solid::crossing(int triangle, const Eigen::Vector3d& p, const Eigen::Vector3d& direction) const {
   // Moeller and Trumbore 1997, doi:10.1080/10867651.1997.10487468.
-  const Eigen::Vector3d a = mesh_.vertices.col(mesh_.triangles(0, triangle));
-  const Eigen::Vector3d e1 = mesh_.vertices.col(mesh_.triangles(1, triangle)) - a;
-  const Eigen::Vector3d e2 = mesh_.vertices.col(mesh_.triangles(2, triangle)) - a;
+  const Eigen::Matrix3d corner = tree_.corners(triangle);
+  const Eigen::Vector3d a = corner.col(0);
+  const Eigen::Vector3d e1 = corner.col(1) - a;
+  const Eigen::Vector3d e2 = corner.col(2) - a;
   const Eigen::Vector3d across = direction.cross(e2);
   const double determinant = e1.dot(across);
   constexpr double kEdge = 1e-10;
@@ -62,66 +95,53 @@ Solid::Crossing Solid::crossing(Eigen::Index triangle, const Eigen::Vector3d& p,
   return determinant > 0.0 ? Crossing::in : Crossing::out;
 }
 
-bool Solid::inside(const Eigen::Vector3d& p) const {
-  if (!closed_ || !bounds_.contains(p)) return false;
-  int winding = 0;
-  for (const Eigen::Vector3d& direction : kDirections) {
-    winding = 0;
-    bool clear = true;
-    for (Eigen::Index i = 0; i < mesh_.triangles.cols() && clear; ++i) {
-      switch (crossing(i, p, direction)) {
+std::optional<int> Solid::winding(const Eigen::Vector3d& p, const Eigen::Vector3d& direction) const {
+  int sum = 0;
+  for (std::size_t i = 0; i < tree_.balls().size();) {
+    const BallTree::Ball& ball = tree_.balls()[i];
+    const Eigen::Vector3d to = ball.center - p;
+    const double along = to.dot(direction);
+    // A little more than the ball, for rays that graze.
+    const double reach = ball.radius * (1.0 + 1e-9);
+    if (to.squaredNorm() - along * along > reach * reach || along < -reach) {
+      i = static_cast<std::size_t>(ball.next);
+      continue;
+    }
+    for (int k = ball.begin; ball.leaf && k < ball.end; ++k) {
+      switch (crossing(tree_.order()[static_cast<std::size_t>(k)], p, direction)) {
         case Crossing::in:
-          ++winding;
+          ++sum;
           break;
         case Crossing::out:
-          --winding;
+          --sum;
           break;
         case Crossing::unclear:
-          clear = false;
-          break;
+          return std::nullopt;
         case Crossing::none:
           break;
       }
     }
-    if (clear) return winding != 0;
+    ++i;
+  }
+  return sum;
+}
+
+bool Solid::inside(const Eigen::Vector3d& p) const {
+  if (!closed_ || !bounds_.contains(p)) return false;
+  for (const Eigen::Vector3d& direction : kDirections) {
+    if (const auto sum = winding(p, direction.normalized())) return *sum != 0;
   }
   // Every ray met an edge: only a point on the surface itself does that.
   return false;
 }
 
-double Solid::triangle_distance(Eigen::Index triangle, const Eigen::Vector3d& p) const {
-  const std::array<Eigen::Vector3d, 3> corner = {mesh_.vertices.col(mesh_.triangles(0, triangle)),
-                                                 mesh_.vertices.col(mesh_.triangles(1, triangle)),
-                                                 mesh_.vertices.col(mesh_.triangles(2, triangle))};
-  const Eigen::Vector3d n = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
-  bool over = n.norm() > 0.0;
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Eigen::Vector3d& a = corner[i];
-    const Eigen::Vector3d edge = corner[(i + 1) % 3] - a;
-    if (n.cross(edge).dot(p - a) < 0.0) over = false;
-    const double length = edge.squaredNorm();
-    const double along = length > 0.0 ? std::clamp(edge.dot(p - a) / length, 0.0, 1.0) : 0.0;
-    least = std::min(least, (p - a - along * edge).norm());
-  }
-  return over ? std::min(least, std::abs(n.dot(p - corner[0])) / n.norm()) : least;
-}
-
-double Solid::distance(const Eigen::Vector3d& p) const {
-  double least = std::numeric_limits<double>::infinity();
-  for (Eigen::Index i = 0; i < mesh_.triangles.cols(); ++i) least = std::min(least, triangle_distance(i, p));
-  return least;
-}
-
 double Solid::normal_angle(const Eigen::Vector3d& p, const Eigen::Vector3d& direction, double reach) const {
   std::vector<Eigen::Vector3d> normals;
   double least = std::numbers::pi;
-  for (Eigen::Index i = 0; i < mesh_.triangles.cols(); ++i) {
-    const Eigen::Vector3d a = mesh_.vertices.col(mesh_.triangles(0, i));
-    const Eigen::Vector3d e1 = mesh_.vertices.col(mesh_.triangles(1, i)) - a;
-    const Eigen::Vector3d e2 = mesh_.vertices.col(mesh_.triangles(2, i)) - a;
-    const Eigen::Vector3d n = e1.cross(e2);
-    if (n.norm() == 0.0 || triangle_distance(i, p) > reach) continue;
+  for (int i = 0; i < static_cast<int>(mesh_->triangles.cols()); ++i) {
+    const Eigen::Matrix3d corner = tree_.corners(i);
+    const Eigen::Vector3d n = (corner.col(1) - corner.col(0)).cross(Eigen::Vector3d(corner.col(2) - corner.col(0)));
+    if (n.norm() == 0.0 || triangle_distance(corner, p) > reach) continue;
     normals.push_back(n.normalized());
     least = std::min(least, std::atan2(n.cross(direction).norm(), n.dot(direction)));
   }

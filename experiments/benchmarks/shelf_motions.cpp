@@ -37,14 +37,16 @@ Eigen::Isometry3d random_palm(const Eigen::Isometry3d& X_WO, Rng& rng) {
 
 std::vector<Eigen::VectorXd> free_goals(const robot::RobotModel& robot, const robot::Scene& scene,
                                         const robot::CollisionChecker& checker, const Eigen::VectorXd& start) {
-  const robot::ArmKinematics kinematics(robot);
+  const robot::InverseKinematics kinematics = robot::make_inverse_kinematics(robot);
   const Eigen::VectorXd open_hand = start.segment(robot.hand().first, robot.hand().count);
   const Eigen::Isometry3d X_WO = scene.body(scene.object).X_WB;
   Rng rng = stream(1, "shelf goals");
   std::vector<Eigen::VectorXd> goals;
   for (int i = 0; i < kTries && static_cast<int>(goals.size()) < kGoals; ++i) {
     const Eigen::Isometry3d X_RH = scene.X_WR.inverse() * random_palm(X_WO, rng);
-    for (const Eigen::VectorXd& q_arm : kinematics.branches(X_RH)) {
+    const auto solutions = kinematics(X_RH, {});
+    if (!solutions) continue;
+    for (const Eigen::VectorXd& q_arm : *solutions) {
       const Eigen::VectorXd q = motion::join(robot, q_arm, open_hand);
       if (!checker.free(q)) continue;
       goals.push_back(q);

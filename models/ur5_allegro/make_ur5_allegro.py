@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The opponens authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes ur5.urdf, allegro_right.urdf and allegro_right.yaml beside itself.
+"""Writes ur5.urdf and, for both hands, allegro_*.urdf and allegro_*.yaml beside itself.
 
 Sources
   UR5: Denavit-Hartenberg table published by Universal Robots (d1 0.089159, a2 -0.425, a3 -0.39225, d4 0.10915,
@@ -10,7 +10,9 @@ Sources
   Allegro hand, right: joint places, limits and box sizes published by Wonik Robotics with the hand.
 Conventions
   Every joint of the arm turns about its frame's z axis: link frames are the Denavit-Hartenberg frames of the table.
-  Hand: x out of the palm, y to the index finger, z along the fingers; flexion is positive about y.
+  Right hand: x out of the palm, y to the index finger, z along the fingers; flexion is positive about y.
+  Left hand: the right one mirrored in the plane y = 0 of the palm, so that equal joint positions are mirrored postures and
+  synergies found for the right hand serve the left. Wonik's own left hand turns the abduction joints the other way.
 """
 from math import cos, pi, radians, sin
 from pathlib import Path
@@ -51,7 +53,23 @@ def triple(values):
 
 
 def exact(angles):
-    return " ".join(f"{a:.17g}" for a in angles)  # nine digits would tilt a frame by 1e-9 rad
+    return " ".join(f"{a + 0.0:.17g}" for a in angles)  # nine digits would tilt a frame by 1e-9 rad
+
+
+RIGHT, LEFT = 1, -1
+
+
+def place(side, xyz):
+    return (xyz[0], side * xyz[1], xyz[2])
+
+
+def turn(side, rpy):
+    return (side * rpy[0], rpy[1], side * rpy[2])
+
+
+def axis_of(side, axis):
+    """A rotation by q about an axis a, mirrored, is one by q about -M a."""
+    return (side * axis[0], axis[1], side * axis[2])
 
 
 def collision(geometry, xyz=(0, 0, 0), rpy=(0, 0, 0)):
@@ -111,27 +129,31 @@ def tip(last, length):
             joint(last.replace("link", "joint") + "_tip", last, last + "_tip", (0, 0, length)))
 
 
-def hand():
+def hand(side):
+    def moved(name, parent, at, rpy, axis, limits):
+        return joint(name, parent, name.replace("joint", "link"), place(side, at), turn(side, rpy), axis_of(side, axis),
+                     limits, 7)
+
     body = link("palm_link", [collision(box(0.0408, 0.113, 0.0475), (-0.0093, 0, -0.02375)),
-                              collision(box(0.0408, 0.0965, 0.0475), (-0.0093, -0.00825, -0.07125))])
+                              collision(box(0.0408, 0.0965, 0.0475), place(side, (-0.0093, -0.00825, -0.07125)))])
     for _, first, y, z, tilt in FINGERS:
         parent, at, rpy, axis = "palm_link", (0, y, z), (radians(tilt), 0, 0), (0, 0, 1)
         for i, (length, limits) in enumerate(zip(FINGER_LENGTHS, FINGER_LIMITS)):
             name = f"link_{first + i}.0"
             body += link(name, finger_box(length))
-            body += joint(f"joint_{first + i}.0", parent, name, at, rpy, axis, limits, 7)
+            body += moved(f"joint_{first + i}.0", parent, at, rpy, axis, limits)
             parent, at, rpy, axis = name, (0, 0, length), (0, 0, 0), (0, 1, 0)
         body += tip(parent, FINGER_LENGTHS[-1])
-    body += link("link_12.0", [collision(box(0.0358, 0.034, 0.0455), (-0.0179, 0.009, 0.0145))])
-    body += joint("joint_12.0", "palm_link", "link_12.0", (-0.0182, 0.019333, -0.045987), (0, radians(-95), -pi / 2),
-                  (-1, 0, 0), THUMB_LIMITS[0], 7)
+    body += link("link_12.0", [collision(box(0.0358, 0.034, 0.0455), place(side, (-0.0179, 0.009, 0.0145)))])
+    body += moved("joint_12.0", "palm_link", (-0.0182, 0.019333, -0.045987), (0, radians(-95), -pi / 2), (-1, 0, 0),
+                  THUMB_LIMITS[0])
     parent, at, axis = "link_12.0", (-0.027, 0.005, 0.0399), (0, 0, 1)
     for i, (length, limits) in enumerate(zip(THUMB_LENGTHS, THUMB_LIMITS[1:]), 13):
         name = f"link_{i}.0"
         body += link(name, finger_box(length))
-        body += joint(f"joint_{i}.0", parent, name, at, (0, 0, 0), axis, limits, 7)
+        body += moved(f"joint_{i}.0", parent, at, (0, 0, 0), axis, limits)
         parent, at, axis = name, (0, 0, length), (0, 1, 0)
-    return document("allegro_right", body + tip(parent, THUMB_LENGTHS[-1]))
+    return document("allegro_right" if side == RIGHT else "allegro_left", body + tip(parent, THUMB_LENGTHS[-1]))
 
 
 def point(finger, name_of_link, at, normal, name=None):
@@ -140,7 +162,7 @@ def point(finger, name_of_link, at, normal, name=None):
             f"normal: [{', '.join(number(v) for v in normal)}]}}")
 
 
-def surface_points():
+def surface_points(side):
     """Fig. 5 of the paper: four contacts a finger, three on the thumb, three on the palm."""
     slope = (cos(radians(30)), 0.0, sin(radians(30)))  # the tip's pad: 30 deg from the palmar side to the end
     pad = [TIP_RADIUS * v for v in slope]
@@ -154,7 +176,7 @@ def surface_points():
         tips.append(point(finger, last, pad, slope))
         contacts.append(point(finger, last, pad, slope, f"{finger}_tip"))
     for i, (y, z) in enumerate(((0.02, -0.02), (-0.035, -0.02), (-0.03, -0.07)), 1):
-        contacts.append(point("palm", "palm_link", (0.0111, y, z), (1, 0, 0), f"palm_{i}"))
+        contacts.append(point("palm", "palm_link", place(side, (0.0111, y, z)), (1, 0, 0), f"palm_{i}"))
     return tips + contacts
 
 
@@ -172,15 +194,18 @@ def mapping():
                     "  fingertips: {index: index, middle: middle, ring: ring, thumb: {tip: thumb, from: index}}"]
 
 
-def hand_yaml():
+def hand_yaml(side):
     joints = [f"joint_{i}.0" for i in range(16)]
     lines = ["# SPDX-FileCopyrightText: 2026 The opponens authors", "# SPDX-License-Identifier: BSD-3-Clause",
-             "# Written by make_ur5_allegro.py.", "urdf: allegro_right.urdf", "palm_link: palm_link",
+             "# Written by make_ur5_allegro.py.",
+             f"urdf: {'allegro_right' if side == RIGHT else 'allegro_left'}.urdf", "palm_link: palm_link",
              f"joints: [{', '.join(joints[:8])},", f"         {', '.join(joints[8:])}]"]
-    return "\n".join(lines + surface_points() + mapping()) + "\n"
+    # The gloves are right hands: the left hand takes the joint positions found for the right one.
+    return "\n".join(lines + surface_points(side) + (mapping() if side == RIGHT else [])) + "\n"
 
 
 here = Path(__file__).resolve().parent
 (here / "ur5.urdf").write_text(arm())
-(here / "allegro_right.urdf").write_text(hand())
-(here / "allegro_right.yaml").write_text(hand_yaml())
+for hand_side, hand_name in ((RIGHT, "allegro_right"), (LEFT, "allegro_left")):
+    (here / f"{hand_name}.urdf").write_text(hand(hand_side))
+    (here / f"{hand_name}.yaml").write_text(hand_yaml(hand_side))

@@ -25,6 +25,26 @@ TEST(BootstrapQuantile, HandComputed) {
   EXPECT_DOUBLE_EQ(bootstrap_quantile(sorted, 1.0), 4.0);
 }
 
+/// Tables of the exact interval (as R's binom.test prints them), and its defining equations.
+TEST(ProportionInterval, IsClopperAndPearsons) {
+  const Interval none = proportion_interval(0, 10, 0.95);
+  EXPECT_DOUBLE_EQ(none.low, 0.0);
+  EXPECT_NEAR(none.high, 0.3084971, 1e-7);
+  const Interval half = proportion_interval(5, 10, 0.95);
+  EXPECT_NEAR(half.low, 0.1870860, 1e-7);
+  EXPECT_NEAR(half.high, 0.8129140, 1e-7);
+  EXPECT_DOUBLE_EQ(proportion_interval(10, 10, 0.95).high, 1.0);
+  for (const int events : {1, 7, 399}) {
+    const Interval interval = proportion_interval(events, 400, 0.9);
+    const boost::math::binomial_distribution<double> low(400, interval.low);
+    const boost::math::binomial_distribution<double> high(400, interval.high);
+    EXPECT_NEAR(boost::math::cdf(boost::math::complement(low, events - 1)), 0.05, 1e-9);
+    EXPECT_NEAR(boost::math::cdf(high, events), 0.05, 1e-9);
+  }
+  EXPECT_THROW(static_cast<void>(proportion_interval(11, 10, 0.95)), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(proportion_interval(0, 0, 0.95)), std::invalid_argument);
+}
+
 TEST(BasicLogitInterval, ReflectsAndStaysInside) {
   std::vector<double> replicates;
   for (int i = 1; i <= 199; ++i) replicates.push_back(0.90 + 0.0004 * i);

@@ -108,6 +108,9 @@ class BadInput(unittest.TestCase):
         text = (SOURCE / "models/scenes/cylinder_shelf.yaml").read_text()
         scene.write_text(text + "\nsurprise: 1\n")
         self.refuse(2, ["scene.yaml", "surprise"], "grasp", "--store", self.store, "--scene", scene)
+        arm = self.root / "arm.yaml"
+        arm.write_text(f"name: arm\narm: {{urdf: {SOURCE}/models/ur5_allegro/ur5.urdf, joints: [elbow_joint]}}\n")
+        self.refuse(2, ["arm.yaml", "arm without a hand"], "grasp", "--store", self.store, "--robot", arm)
         self.refuse(2, ["teapot"], "grasp", "--store", self.store, "--object", "teapot")
 
     def test_wrong_use(self):

@@ -99,6 +99,11 @@ class Pipeline(unittest.TestCase):
         self.assertGreater(verify["checked"], 4)
         self.assertGreater(verify["worst_clearance_m"], 0.0)
         self.assertIn(" and ", verify["worst_pair"])
+        self.assertRegex(verify["worst_place"], r"waypoint.* of path [0-9a-f]{12}$")
+        self.assertLessEqual(verify["clearance_m"], verify["proven_clearance_m"])
+        self.assertLessEqual(verify["proven_clearance_m"], verify["worst_clearance_m"])
+        self.assertGreaterEqual(verify["proven_contact_penetration_m"], verify["worst_contact_penetration_m"])
+        self.assertLessEqual(verify["proven_contact_penetration_m"], verify["max_penetration_m"])
 
     def test_both_planners_answer(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -122,7 +127,7 @@ class Pipeline(unittest.TestCase):
             self.assertTrue(failed)
             self.assertLessEqual(set(failed), set(coarse))
             for reason in failed.values():
-                self.assertIn("collision of", reason)
+                self.assertRegex(reason, "collision of|mm apart")
 
     def test_every_run_is_recorded_the_failed_ones_too(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -70,7 +70,7 @@ class RobotWorld : public ::testing::Test {
   robot::RobotModel robot{robot::load_robot(kModels / "ur5_allegro" / "ur5_allegro_right.yaml")};
   robot::Scene scene = robot::load_scene(kModels / "scenes" / "bottle_shelf.yaml");
   robot::CollisionChecker checker{robot, scene};
-  robot::ArmKinematics kinematics{robot};
+  robot::InverseKinematics kinematics = robot::make_inverse_kinematics(robot);
   Eigen::Matrix3d side_rotation_ = Eigen::Matrix3d::Identity();
 
   /// A palm pose in front of the bottle whose pre-grasp the arm reaches without collision: found by turning the palm in

@@ -210,7 +210,8 @@ PathPart path(const robot::RobotModel& robot, const robot::Scene& scene, const G
   Eigen::VectorXd end = start;
   const Eigen::Isometry3d X_WH = scene.body("bottle").X_WB * grasps.items.front().grasp.X_OH;
   double nearest = 1e9;
-  for (const auto& arm : robot::ArmKinematics(robot).solve(scene.X_WR.inverse() * X_WH)) {
+  const auto solutions = robot::make_inverse_kinematics(robot)(scene.X_WR.inverse() * X_WH, {});
+  for (const auto& arm : solutions.value()) {
     if ((arm - start.head(6)).norm() > nearest) continue;
     nearest = (arm - start.head(6)).norm();
     end.head(6) = arm;

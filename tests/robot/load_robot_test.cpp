@@ -6,8 +6,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <functional>
 #include <map>
 
 #include <gtest/gtest.h>
@@ -15,6 +13,7 @@
 #include "core/require.hpp"
 #include "core/rng.hpp"
 #include "robot/collision.hpp"
+#include "robot_files.hpp"
 #include "robot_test.hpp"
 
 namespace opponens::robot {
@@ -22,59 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder of one test, removed with it.
-class LoadRobot : public ::testing::Test {
- protected:
-  LoadRobot()
-      : folder_(fs::temp_directory_path() / (std::string("opponens_load_robot_") +
-                                             ::testing::UnitTest::GetInstance()->current_test_info()->name())) {
-    fs::create_directories(folder_);
-  }
-  ~LoadRobot() override { fs::remove_all(folder_); }
-
-  fs::path write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
-    return folder_ / name;
-  }
-
-  /// The message of the InputError that loading this URDF as a hand gives.
-  std::string urdf_error(const std::string& urdf, const std::string& joints = "j") const {
-    write("hand.urdf", urdf);
-    return error_of(write("hand.yaml", "urdf: hand.urdf\npalm_link: a\njoints: [" + joints + "]\n"));
-  }
-
-  static std::string error_of(const fs::path& yaml, RobotDescription (*load)(const fs::path&) = load_hand) {
-    try {
-      load(yaml);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "no error";
-  }
-
-  fs::path folder_;
-};
-
-void expect_contains(const std::string& text, const std::vector<std::string>& parts) {
-  for (const std::string& part : parts) EXPECT_NE(text.find(part), std::string::npos) << part << " is not in: " << text;
-  EXPECT_EQ(text.find('\n'), std::string::npos) << "one line is wanted: " << text;
-}
-
-const std::string kLimit = "<limit lower='-1' upper='1' effort='1' velocity='1'/>";
-
-std::string joint(const std::string& name, const std::string& parent, const std::string& child,
-                  const std::string& type = "revolute", const std::string& inside = kLimit) {
-  return "<joint name='" + name + "' type='" + type + "'><parent link='" + parent + "'/><child link='" + child + "'/>" +
-         inside + "</joint>";
-}
-
-std::string links(const std::string& names) {
-  std::string text;
-  for (const char name : names) text += std::string("<link name='") + name + "'/>";
-  return text;
-}
-
-std::string robot(const std::string& inside) { return "<robot name='r'>" + inside + "</robot>"; }
+using LoadRobot = RobotFiles;
 
 TEST_F(LoadRobot, ErrorsNameFileAndElement) {
   EXPECT_EQ(urdf_error(robot(links("ab") + joint("j", "a", "b"))), "no error");
@@ -208,6 +155,30 @@ TEST_F(LoadRobot, TreeOrderMimicNotesAndSupport) {
             (std::set<std::pair<int, int>>{{0, 1}, {1, 2}, {1, 3}, {2, 3}, {3, 4}, {3, 5}, {4, 6}, {5, 6}}));
 }
 
+TEST_F(LoadRobot, PrefixTellsTheArmsLinksFromTheHands) {
+  const std::string box = "<collision><geometry><box size='1 1 1'/></geometry></collision>";
+  write("hand.urdf", robot("<link name='a'>" + box + "</link>" + links("b") + joint("j", "a", "b")));
+  write("arm.urdf", robot("<link name='a'>" + box + "</link><link name='b'>" + box + "</link>" + joint("s", "a", "b")));
+  write("hand.yaml", "urdf: hand.urdf\npalm_link: a\njoints: [j]\n");
+  const std::string end = "hand: hand.yaml\nmount: {parent: arm_b}\n";
+  const std::string arm = "arm: {urdf: arm.urdf, joints: [s], link_prefix: arm_}\n";
+  const RobotDescription loaded = load_robot(write("r.yaml", arm + end + "without_geometry: [arm_b, a]\n"));
+  std::vector<std::string> names;
+  std::vector<std::size_t> shapes;
+  for (const Link& link : loaded.links) {
+    names.push_back(link.name);
+    shapes.push_back(link.collision.size());
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"arm_a", "arm_b", "a", "b"}));
+  EXPECT_EQ(shapes, (std::vector<std::size_t>{1, 0, 0, 0})) << "of the arm's b and the hand's a";
+  EXPECT_EQ(loaded.arm_tip_link, "arm_b");
+  const auto yaml_error = [&](const std::string& text) { return error_of(write("r.yaml", text), load_robot); };
+  expect_contains(yaml_error("arm: {urdf: arm.urdf, joints: [s]}\nhand: hand.yaml\nmount: {parent: b}\n"),
+                  {"r.yaml:3", "'a'", "arm.link_prefix"});
+  expect_contains(yaml_error("arm: {urdf: hand.urdf, joints: [s], link_prefix: arm_}\nhand: hand.yaml\n"),
+                  {"r.yaml:1", "link_prefix", "two files"});
+}
+
 /// Signed distance to the surface of a link's primitive shapes: the least over them.
 double surface_distance(const Link& link, const Eigen::Vector3d& p_L) {
   double least = 1e9;
@@ -255,7 +226,9 @@ TEST_F(LoadRobot, RealRobotsLoadWithTheirPointsOnTheSurface) {
   setenv("OPPONENS_SHARED_DATA", OPPONENS_SHARED_DATA, 1);
   const std::string folder = OPPONENS_SOURCE_DIR "/tests/data/robots/";
   check_hand(load_robot(folder + "example_ur5_allegro_right.yaml"), 3);
+  check_hand(load_robot(folder + "example_ur5_allegro_left.yaml"), 3);
   check_hand(load_robot(folder + "paper_lab_ur5_allegro_right_urdf.yaml"), 3);
+  check_hand(load_robot(folder + "paper_lab_ur5_allegro_left_urdf.yaml"), 3);
   const RobotDescription visual = load_robot(folder + "paper_lab_ur5_allegro_right_visual.yaml");
   std::size_t triangles = 0;
   for (const Link& link : visual.links) {

@@ -38,6 +38,10 @@ std::vector<RobotDescription> robots() {
   all.push_back(load_robot(folder + "paper_lab_ur5_allegro_right_urdf.yaml"));
   all.push_back(load_robot(folder + "paper_lab_ur5_allegro_right_visual.yaml"));
   all.push_back(load_hand(folder + "dex_allegro_right.yaml"));
+  all.push_back(load_hand(folder + "example_allegro_right.yaml"));
+  const std::string hands = OPPONENS_SHARED_DATA "/data/robots/dex-urdf/robots/hands/";
+  all.push_back(load_hand(ours("shadow_hand/shadow_right.yaml"), hands + "shadow_hand/shadow_hand_right.urdf"));
+  all.push_back(load_hand(ours("barrett_hand/barrett_right.yaml"), hands + "barrett_hand/bhand_model.urdf"));
   return all;
 }
 
@@ -74,14 +78,19 @@ Isometry3d by_exponentials(const RobotModel& robot, const VectorXd& q, int link)
   while (robot.links()[static_cast<std::size_t>(link)].joint >= 0) {
     const Joint& joint =
         robot.description().joints[static_cast<std::size_t>(robot.links()[static_cast<std::size_t>(link)].joint)];
-    const auto name = std::find(names.begin(), names.end(), joint.name);
-    if (name != names.end()) {
+    const auto name = std::find(names.begin(), names.end(), joint.mimic ? joint.mimic->joint : joint.name);
+    if (name != names.end()) {  // the zero pose has the offsets of mimic joints
+      const double position = (joint.mimic ? joint.mimic->multiplier : 1.0) * q[name - names.begin()];
       const Isometry3d& X_J = zero[static_cast<std::size_t>(link)];
       const Vector3d w = X_J.linear() * joint.axis;
-      Isometry3d turn = Isometry3d::Identity();
-      turn.linear() = Eigen::AngleAxisd(q[name - names.begin()], w).toRotationMatrix();
-      turn.translation() = X_J.translation() - turn.linear() * X_J.translation();
-      X = turn * X;
+      Isometry3d motion = Isometry3d::Identity();
+      if (joint.type == JointType::prismatic) {
+        motion.translation() = position * w;
+      } else {
+        motion.linear() = Eigen::AngleAxisd(position, w).toRotationMatrix();
+        motion.translation() = X_J.translation() - motion.linear() * X_J.translation();
+      }
+      X = motion * X;
     }
     link = joint.parent;
   }
@@ -89,7 +98,9 @@ Isometry3d by_exponentials(const RobotModel& robot, const VectorXd& q, int link)
 }
 
 TEST(RobotModel, MatchesTheProductOfExponentials) {
-  for (const RobotDescription& description : robots()) {
+  std::vector<RobotDescription> all = robots();
+  all.push_back(slider());
+  for (const RobotDescription& description : all) {
     const RobotModel robot(description);
     Rng rng(5);
     for (int sample = 0; sample < 20; ++sample) {

@@ -169,7 +169,8 @@ TEST_P(OwnScenes, StartsFreeWithTheObjectOnItsSupport) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Committed, OwnScenes,
-                         testing::Values("bottle_shelf.yaml", "cylinder_shelf.yaml", "box_table.yaml"));
+                         testing::Values("bottle_shelf.yaml", "bottle_shelf_hard.yaml", "cylinder_shelf.yaml",
+                                         "cylinder_shelf_hard.yaml", "box_table.yaml", "box_table_hard.yaml"));
 
 }  // namespace
 }  // namespace opponens::robot
