@@ -48,7 +48,6 @@ void note(Tally& tally, bool truth, bool same, const VectorXd& q, const Isometry
   tally.example = text.str();
 }
 
-/// The first `count` rows.
 void compare_rows(const Subject& subject, const ConfigurationBatch& rows, Tally& tally) {
   robot::CollisionCounts counts;
   const std::vector<bool> batch = subject.checker.free_rows(rows, &counts);

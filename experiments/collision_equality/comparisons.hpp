@@ -31,8 +31,8 @@ struct Subject {
   Subject(const robot::RobotModel& model, const robot::Scene& around) : robot(model), scene(around) {}
 };
 
-/// Each compares the two-stage verdicts (in batches with and without AVX2, and one by one) with the truth, on at least
-/// `count` configurations.
+// Each compares the two-stage verdicts (in batches with and without AVX2, and one by one) with the truth, on `count`
+// configurations or a few more.
 
 /// Uniform within the limits.
 Tally compare_uniform(const Subject& subject, std::int64_t count, Rng& rng);

@@ -94,7 +94,7 @@ TEST(HullVertices, InnerVerticesAreLeftOut) {
   EXPECT_LE(hull_vertices(ring).count, static_cast<int>(ring.vertices.cols()) * 6 / 10);
 }
 
-/// Two convex shapes near each other, as primitives and as what convex_apart is asked about.
+/// Two convex shapes near each other.
 struct Pair {
   Shape a, b;
   Isometry3d X_WA, X_WB;
@@ -112,7 +112,7 @@ Shape random_convex(Rng& rng) {
   }
 }
 
-/// b is pushed towards a until their bounding spheres are `gap` apart or overlap.
+/// Their centres are at most 1.2 times the sum of their bounding spheres' radii apart.
 Pair random_pair(Rng& rng) {
   Pair pair{random_convex(rng), random_convex(rng), random_pose(1.0, rng), random_pose(1.0, rng)};
   const double reach = CollisionShape(pair.a).radius() + CollisionShape(pair.b).radius();
