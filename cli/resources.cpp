@@ -65,6 +65,14 @@ std::string portable_name(const fs::path& file) {
   return (name.is_absolute() ? name.filename() : name).generic_string();
 }
 
+fs::path cover_folder() {
+  if (const char* folder = std::getenv("OPPONENS_CACHE_DIR")) return folder;
+  const char* const base = std::getenv("XDG_CACHE_HOME");
+  if (base != nullptr && fs::path(base).is_absolute()) return fs::path(base) / "opponens";
+  const char* const home = std::getenv("HOME");
+  return home != nullptr && *home != '\0' ? fs::path(home) / ".cache" / "opponens" : fs::path();
+}
+
 std::string file_sha256(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw InputError(file.string() + ": cannot read it");

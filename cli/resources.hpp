@@ -32,6 +32,11 @@ std::string recorded_name(const std::filesystem::path& file);
 /// file's name alone, so that the same recording is the same object whatever path led to it.
 std::string portable_name(const std::filesystem::path& file);
 
+/// Where what saves time the next time is kept (robot/cover_file.hpp): $OPPONENS_CACHE_DIR, $XDG_CACHE_HOME/opponens
+/// when that is absolute, or ~/.cache/opponens. Empty, for nowhere, when $OPPONENS_CACHE_DIR is set but empty, or none
+/// is set.
+std::filesystem::path cover_folder();
+
 /// SHA-256 (hex) of a file's bytes. Throws InputError when it cannot be read.
 std::string file_sha256(const std::filesystem::path& file);
 

@@ -7,6 +7,7 @@
 #include "cli/resources.hpp"
 #include "cli/stored.hpp"
 #include "core/require.hpp"
+#include "robot/cover_file.hpp"
 #include "robot/load_robot.hpp"
 #include "robot/mesh_check.hpp"
 
@@ -24,7 +25,8 @@ robot::RobotDescription hand_of_motion(const storage::Record& record) {
 NamedWorld load_world(const std::string& robot_file, const std::string& scene_file, const std::string& object) {
   NamedRobot named = named_robot(robot_file);
   const auto scene_path = find_file(scene_file);
-  robot::RobotDescription description = robot::load_robot(named.file, named.arm);
+  const std::filesystem::path covers = cover_folder();
+  robot::RobotDescription description = with_covers(robot::load_robot(named.file, named.arm), covers);
   if (description.driven_arms.size() > 1) {
     throw InputError("--robot " + robot_file + ": one arm grasps and moves; name it: " + named.file.string() + "#" +
                      description.driven_arms[0] + " or #" + description.driven_arms[1]);
@@ -32,7 +34,7 @@ NamedWorld load_world(const std::string& robot_file, const std::string& scene_fi
   if (!description.driven_arms.empty()) named.arm = description.driven_arms[0];
   if (description.hand_joints.empty()) throw InputError(robot_file + ": is an arm without a hand: nothing can grasp");
   robot::RobotDescription hand = robot::hand_of(description);
-  robot::Scene scene = robot::load_scene(scene_path);
+  robot::Scene scene = with_covers(robot::load_scene(scene_path), covers);
   const std::string name = object.empty() ? scene.object : object;
   if (name.empty()) throw InputError(scene_file + ": names no object to grasp; use --object");
   const bool known = std::any_of(scene.bodies.begin(), scene.bodies.end(),

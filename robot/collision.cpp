@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <memory>
+#include <mutex>
 #include <set>
 #include <span>
 
@@ -49,8 +51,7 @@ static_assert(CollisionChecker::kTogether == wide::kLanes);
 
 struct CollisionChecker::World {
   CollisionWorld exact;
-  wide::World fixed;   ///< the robot's root where the scene puts it
-  wide::World flying;  ///< anywhere
+  wide::World fixed;  ///< the robot's root where the scene puts it
   bool portable;
   Eigen::VectorXd zero;                            ///< [d]
   std::vector<std::pair<int, int>> constant;       ///< what no joint moves and touches, or nearly so
@@ -60,7 +61,6 @@ struct CollisionChecker::World {
         const CollisionSettings& settings)
       : exact(robot, scene, touching),
         fixed(exact, true),
-        flying(exact, false),
         portable(settings.portable),
         zero(Eigen::VectorXd::Zero(robot.dof())) {
     Placement placement(exact, exact.X_WR, zero);
@@ -71,6 +71,12 @@ struct CollisionChecker::World {
       constant.emplace_back(a, b);
       if (!exact.of_scene(b)) constant_self.emplace_back(a, b);
     }
+  }
+
+  /// The robot's root anywhere: made when first asked for, which most checkers never are.
+  const wide::World& flying() const {
+    std::call_once(flying_once, [this] { flying_made = std::make_unique<const wide::World>(exact, false); });
+    return *flying_made;
   }
 
   void require_configuration(const Eigen::Ref<const Eigen::VectorXd>& q) const {
@@ -113,7 +119,11 @@ struct CollisionChecker::World {
     Placement placement(exact, X_WR, q);
     for (const wide::Unknown& pair : unknown) {
       if (!concerns(pair)) continue;
-      if (placement.hulls_apart(pair.a, pair.b)) continue;
+      // The truth is dear for meshes; of primitives the first stage knows nearly as much as their hulls would tell.
+      if (exact.involves_mesh(pair.a, pair.b)) {
+        if (placement.hulls_apart(pair.a, pair.b)) continue;
+        if (placement.share_a_point(pair.a, pair.b)) return false;
+      }
       ++asked;
       if (placement.collide(pair.a, pair.b)) return false;
     }
@@ -161,6 +171,10 @@ struct CollisionChecker::World {
           batch, first, count, [&](int row, bool free) { return ended = verdict(row, free); }, counts);
     }
   }
+
+ private:
+  mutable std::once_flag flying_once;
+  mutable std::unique_ptr<const wide::World> flying_made;
 };
 
 CollisionChecker::CollisionChecker(const RobotModel& robot, const Scene& scene, std::vector<BodyPair> touching,
@@ -185,10 +199,10 @@ bool CollisionChecker::free(const Eigen::Isometry3d& X_WR, const Eigen::Ref<cons
   const Eigen::Isometry3d X_SR = w.exact.X_WR.inverse() * X_WR;
   const std::array<float, 12> root = wide_pose(X_SR);
   const ConfigurationBatch row = q.transpose();
-  const wide::Query query = wide_query(w.flying, row, 0, 1, root, w.zero);
-  if (query.lanes == 0 || !w.flying.reaches(X_SR)) return w.exact_free(X_WR, q);
+  const wide::Query query = wide_query(w.flying(), row, 0, 1, root, w.zero);
+  if (query.lanes == 0 || !w.flying().reaches(X_SR)) return w.exact_free(X_WR, q);
   thread_local wide::World::Buffers buffers;
-  const int pairs = w.flying.sweep(query, buffers, w.portable);
+  const int pairs = w.flying().sweep(query, buffers, w.portable);
   const std::span<const wide::Unknown> unknown(buffers.found.data(), static_cast<std::size_t>(pairs));
   std::int64_t asked = 0;
   return w.apart(w.constant_self, X_WR, q) && w.settle(unknown, 0, X_WR, q, asked);

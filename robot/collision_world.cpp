@@ -3,6 +3,7 @@
 #include "robot/collision_world.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "core/require.hpp"
@@ -31,6 +32,19 @@ std::set<BodyPair> excluded_pairs(const RobotModel& robot, const Scene& scene, c
     excluded.emplace(pair.second, pair.first);
   }
   return excluded;
+}
+
+constexpr double kWitnessDepth = 1e-5;  ///< m
+
+/// Whether a point is inside a primitive by kWitnessDepth; false for a mesh.
+bool deep_inside(const Shape& shape, const Eigen::Vector3d& p) {
+  if (const auto* box = std::get_if<Box>(&shape)) {
+    return (0.5 * box->size - p.cwiseAbs()).minCoeff() > kWitnessDepth;
+  }
+  if (const auto* sphere = std::get_if<Sphere>(&shape)) return p.norm() < sphere->radius - kWitnessDepth;
+  const auto* cylinder = std::get_if<Cylinder>(&shape);
+  return cylinder != nullptr && p.head<2>().norm() < cylinder->radius - kWitnessDepth &&
+         std::abs(p.z()) < 0.5 * cylinder->length - kWitnessDepth;
 }
 
 Placement::Placed place(const CollisionShape& shape, const Eigen::Isometry3d& X_WG) {
@@ -66,6 +80,14 @@ CollisionWorld::CollisionWorld(const RobotModel& model, const Scene& scene, cons
   }
 }
 
+bool CollisionWorld::involves_mesh(int a, int b) const {
+  const auto is_mesh = [&](int part) {
+    const Shape& shape = parts[static_cast<std::size_t>(part)].shape.shape();
+    return std::holds_alternative<std::shared_ptr<const TriangleMesh>>(shape);
+  };
+  return is_mesh(a) || is_mesh(b);
+}
+
 const std::string& CollisionWorld::name_of(int part) const {
   const auto body = static_cast<std::size_t>(parts[static_cast<std::size_t>(part)].body);
   return of_scene(part) ? body_names[body] : robot.links()[body].name;
@@ -82,9 +104,9 @@ Placement::Placement(const CollisionWorld& world, const Eigen::Isometry3d& X_WR,
     : world_(world),
       X_WR_(X_WR),
       q_(q),
-      X_RL_(world.robot.links().size()),
+      X_RL_(std::make_unique_for_overwrite<Eigen::Isometry3d[]>(world.robot.links().size())),
+      placed_(std::make_unique_for_overwrite<Placed[]>(world.parts.size())),
       link_known_(world.robot.links().size(), 0),
-      placed_(world.parts.size()),
       part_known_(world.parts.size(), 0) {
   X_RL_[0].setIdentity();
   link_known_[0] = 1;
@@ -126,8 +148,31 @@ bool Placement::collide(int a, int b) {
 }
 
 bool Placement::hulls_apart(int a, int b) {
-  return convex_apart(world_.parts[static_cast<std::size_t>(a)].shape, at(a).X_WG,
-                      world_.parts[static_cast<std::size_t>(b)].shape, at(b).X_WG, kCullMargin);
+  const CollisionShape& A = world_.parts[static_cast<std::size_t>(a)].shape;
+  const CollisionShape& B = world_.parts[static_cast<std::size_t>(b)].shape;
+  return convex_apart(A, at(a).X_WG, B, at(b).X_WG, kCullMargin);
+}
+
+/// Vertices of the hull are points of the mesh, known to a rounding that has to be far below kWitnessDepth.
+bool Placement::holds_a_vertex(int primitive, int mesh) {
+  const CollisionShape& hull_of = world_.parts[static_cast<std::size_t>(mesh)].shape;
+  const Shape& shape = world_.parts[static_cast<std::size_t>(primitive)].shape.shape();
+  const HullVertices& hull = hull_of.hull();
+  if (hull.rounding > 0.5 * kWitnessDepth) return false;  // of a mesh that reaches further than some metres
+  const Eigen::Isometry3d X_PM = at(primitive).X_WG.inverse(Eigen::Isometry) * at(mesh).X_WG;
+  for (int i = 0; i < hull.count; ++i) {
+    if (deep_inside(shape, X_PM * hull.vertex(i))) return true;
+  }
+  return false;
+}
+
+bool Placement::share_a_point(int a, int b) {
+  const auto is_mesh = [&](int part) {
+    return std::holds_alternative<std::shared_ptr<const TriangleMesh>>(
+        world_.parts[static_cast<std::size_t>(part)].shape.shape());
+  };
+  if (is_mesh(a) == is_mesh(b)) return false;
+  return is_mesh(a) ? holds_a_vertex(b, a) : holds_a_vertex(a, b);
 }
 
 double Placement::separation(int a, int b) {

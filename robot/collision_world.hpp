@@ -3,6 +3,7 @@
 // Internal to robot/: the shapes of a robot and its scene, the pairs of them to check, and the exact check of one pair.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -36,6 +37,7 @@ struct CollisionWorld {
   CollisionWorld(const RobotModel& model, const Scene& scene, const std::vector<BodyPair>& touching);
 
   bool of_scene(int part) const { return part >= robot_parts; }
+  bool involves_mesh(int a, int b) const;
   const std::string& name_of(int part) const;
   /// Names of the bodies of two parts: a scene body last, two links in alphabetical order.
   BodyPair names_of(int a, int b) const;
@@ -59,19 +61,23 @@ class Placement {
   bool collide(int a, int b);
   /// Whether the convex hulls of two parts are apart for certain.
   bool hulls_apart(int a, int b);
+  /// Whether a vertex of a mesh was found inside a primitive: two such parts collide for certain, which FCL would find
+  /// out by descending into the mesh. Not found does not mean that they are apart.
+  bool share_a_point(int a, int b);
   double separation(int a, int b);
   /// A lower bound of the separation from bounding volumes, m.
   double distance_bound(int a, int b);
 
  private:
   const Eigen::Isometry3d& link(int index);
+  bool holds_a_vertex(int primitive, int mesh);
 
   const CollisionWorld& world_;
   Eigen::Isometry3d X_WR_;
   const Eigen::Ref<const Eigen::VectorXd>& q_;
-  std::vector<Eigen::Isometry3d> X_RL_;
+  std::unique_ptr<Eigen::Isometry3d[]> X_RL_;  ///< [links], as placed_ uninitialised until known
+  std::unique_ptr<Placed[]> placed_;           ///< [parts]
   std::vector<char> link_known_;
-  std::vector<Placed> placed_;
   std::vector<char> part_known_;
 };
 

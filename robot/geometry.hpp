@@ -22,13 +22,13 @@ struct Cylinder {
   double radius;  ///< m
   double length;  ///< m, along z, centred
 };
-struct SphereTree;
+struct MeshCover;
 struct TriangleMesh {
-  Eigen::Matrix3Xd vertices;                ///< [3 x V] m
-  Eigen::Matrix3Xi triangles;               ///< [3 x F] vertex indices, counter-clockwise seen from outside
-  std::string source;                       ///< file or shape it came from, for messages
-  std::filesystem::path file;               ///< it was read from; empty: it was made here
-  std::shared_ptr<const SphereTree> cover{};  ///< known already (cover_file.hpp); empty: made when it is needed
+  Eigen::Matrix3Xd vertices;               ///< [3 x V] m
+  Eigen::Matrix3Xi triangles;              ///< [3 x F] vertex indices, counter-clockwise seen from outside
+  std::string source;                      ///< file or shape it came from, for messages
+  std::filesystem::path file;              ///< it was read from; empty: it was made here
+  std::shared_ptr<const MeshCover> cover{};  ///< of these triangles (cover_file.hpp); empty: made when it is needed
 };
 
 /// Meshes are immutable and shared: the finger links of a hand repeat the same 10,000 triangles.

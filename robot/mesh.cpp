@@ -91,7 +91,11 @@ struct TriangulateVisitor {
     mesh.source = "cylinder";
     return mesh;
   }
-  TriangleMesh operator()(const std::shared_ptr<const TriangleMesh>& mesh) const { return *mesh; }
+  TriangleMesh operator()(const std::shared_ptr<const TriangleMesh>& mesh) const {
+    TriangleMesh copy = *mesh;
+    copy.cover = nullptr;  // the copy's owner may change it
+    return copy;
+  }
 };
 
 /// Component number of every vertex (-1: in no triangle), numbered by their first vertex.

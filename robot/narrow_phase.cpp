@@ -22,6 +22,7 @@
 
 #include "core/require.hpp"
 #include "robot/convex_distance.hpp"
+#include "robot/cover_file.hpp"
 #include "robot/solid_region.hpp"
 
 namespace opponens::robot {
@@ -52,6 +53,7 @@ std::shared_ptr<fcl::CollisionGeometryd> fcl_mesh(const TriangleMesh& mesh) {
 
 struct CollisionShape::Data {
   Shape shape;
+  Bounds bounds;
   std::shared_ptr<const TriangleMesh> mesh;            ///< null for a primitive
   std::shared_ptr<fcl::CollisionGeometryd> primitive;  ///< null for a mesh
 
@@ -68,14 +70,14 @@ struct CollisionShape::Data {
   }
 
   const SphereTree& cover() const {
-    std::call_once(cover_once, [this] {
-      cover_made = mesh != nullptr && mesh->cover != nullptr ? mesh->cover
-                                                             : std::make_shared<const SphereTree>(sphere_tree(shape));
-    });
-    return *cover_made;
+    if (mesh != nullptr && mesh->cover != nullptr) return mesh->cover->tree;
+    std::call_once(cover_once,
+                   [this] { cover_made = mesh != nullptr ? sphere_tree(*mesh, region()) : sphere_tree(shape); });
+    return cover_made;
   }
 
   const HullVertices& hull() const {
+    if (mesh->cover != nullptr) return mesh->cover->hull;
     std::call_once(hull_once, [this] { hull_made = hull_vertices(*mesh); });
     return hull_made;
   }
@@ -95,7 +97,7 @@ struct CollisionShape::Data {
   mutable std::once_flag cover_once;
   mutable std::once_flag hull_once;
   mutable HullVertices hull_made;
-  mutable std::shared_ptr<const SphereTree> cover_made;
+  mutable SphereTree cover_made;
   mutable std::unique_ptr<const SolidRegion> region_made;
   mutable std::shared_ptr<fcl::CollisionGeometryd> fcl_made;
 };
@@ -145,6 +147,7 @@ std::shared_ptr<const CollisionShape::Data> make_data(const Shape& shape) {
   auto data = std::make_shared<CollisionShape::Data>();
   data->shape = shape;
   data->primitive = std::visit(FclPrimitive{}, shape);
+  data->bounds = std::visit(BoundsOf{}, shape);
   // FCL fills this cache lazily elsewhere; filled here, the geometry is read-only afterwards.
   if (data->primitive != nullptr) data->primitive->computeLocalAABB();
   if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&shape)) data->mesh = *mesh;
@@ -226,7 +229,7 @@ double mesh_primitive_gap(const CollisionShape& mesh, const Eigen::Isometry3d& X
 CollisionShape::CollisionShape(const Shape& shape) {
   const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&shape);
   data_ = mesh != nullptr && *mesh != nullptr ? shared_data(*mesh) : make_data(shape);
-  bounds_ = std::visit(BoundsOf{}, shape);
+  bounds_ = data_->bounds;
 }
 
 const SphereTree& CollisionShape::cover() const { return data_->cover(); }

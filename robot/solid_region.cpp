@@ -23,7 +23,7 @@ bool SolidRegion::Enclosure::encloses(const Eigen::Vector3d& p) const {
   return box.contains(p) && (distance.signed_distance(p) < 0.0) == outward;
 }
 
-SolidRegion::SolidRegion(const TriangleMesh& mesh) : triangles_(mesh) {
+SolidRegion::SolidRegion(const TriangleMesh& mesh) : mesh_(mesh) {
   std::vector<Eigen::Vector3d> seed_of;
   for (TriangleMesh& component : components(mesh)) {
     const Eigen::Vector3d seed = component.vertices.col(component.triangles(0, 0));
@@ -31,7 +31,7 @@ SolidRegion::SolidRegion(const TriangleMesh& mesh) : triangles_(mesh) {
     const double volume = mass_properties(component).volume;
     const Eigen::AlignedBox3d box(component.vertices.rowwise().minCoeff(), component.vertices.rowwise().maxCoeff());
     if (!is_closed(component) || std::abs(volume) <= kLeastFilling * box.volume()) {
-      open_ = true;
+      sheets_.emplace_back(component);
       continue;
     }
     enclosures_.push_back({box, MeshDistance(std::make_shared<TriangleMesh>(std::move(component))), volume > 0.0});
@@ -54,7 +54,21 @@ bool SolidRegion::contains(const Eigen::Vector3d& p) const {
 }
 
 bool SolidRegion::touches(const Eigen::Vector3d& p) const {
-  return contains(p) || triangles_.nearest(p).squared_distance < kTouching * kTouching;
+  int layers = 0;
+  for (const Enclosure& e : enclosures_) {
+    if (e.box.squaredExteriorDistance(p) >= kTouching * kTouching) continue;
+    const double distance = e.distance.signed_distance(p);
+    if (std::abs(distance) < kTouching) return true;
+    if (e.box.contains(p) && (distance < 0.0) == e.outward) layers += e.cavity ? -1 : 1;
+  }
+  return layers > 0 || std::any_of(sheets_.begin(), sheets_.end(), [&](const BoundingVolumeTree& sheet) {
+           return sheet.nearest(p).squared_distance < kTouching * kTouching;
+         });
+}
+
+const BoundingVolumeTree& SolidRegion::triangles() const {
+  std::call_once(triangles_once_, [this] { triangles_.emplace(mesh_); });
+  return *triangles_;
 }
 
 }  // namespace opponens::robot

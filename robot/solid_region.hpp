@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <mutex>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -13,9 +15,10 @@
 namespace opponens::robot {
 
 /// The solid that a mesh encloses: points that lie in more of its closed components than of its cavities, so meshes
-/// whose parts overlap are solid throughout. Open components enclose nothing. Immutable, thread-safe.
+/// whose parts overlap are solid throughout. Open components enclose nothing. Thread-safe.
 class SolidRegion {
  public:
+  /// The mesh is referred to and must outlive this.
   explicit SolidRegion(const TriangleMesh& mesh);
 
   bool contains(const Eigen::Vector3d& p) const;
@@ -24,8 +27,9 @@ class SolidRegion {
   /// A vertex of each component.
   const std::vector<Eigen::Vector3d>& seeds() const { return seeds_; }
   /// Whether a component is not closed.
-  bool open() const { return open_; }
-  const BoundingVolumeTree& triangles() const { return triangles_; }
+  bool open() const { return !sheets_.empty(); }
+  /// All triangles, in a tree that is made when it is first asked for.
+  const BoundingVolumeTree& triangles() const;
 
  private:
   /// What one closed component encloses.
@@ -37,10 +41,12 @@ class SolidRegion {
     bool encloses(const Eigen::Vector3d& p) const;
   };
 
+  const TriangleMesh& mesh_;
   std::vector<Enclosure> enclosures_;
+  std::vector<BoundingVolumeTree> sheets_;  ///< of the components that enclose nothing
   std::vector<Eigen::Vector3d> seeds_;
-  bool open_ = false;
-  BoundingVolumeTree triangles_;
+  mutable std::once_flag triangles_once_;
+  mutable std::optional<BoundingVolumeTree> triangles_;
 };
 
 }  // namespace opponens::robot

@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
-#include <tuple>
+#include <map>
 #include <utility>
 
 #include "core/require.hpp"
@@ -21,12 +22,12 @@ using Eigen::Vector3d;
 
 /// Radii are enlarged by this share, far above the rounding of distances in double precision.
 constexpr double kRounding = 1e-12;
-constexpr int kCenterSteps = 100;
-constexpr int kCoreSetRounds = 4;
+constexpr double kLooseness = 1e-3;   ///< share by which a ball may be larger than the smallest
+constexpr int kMostPivots = 32;       ///< points that may be added to a ball's support, one after the other
 constexpr int kBranching = 4;         ///< children per node wanted
 constexpr double kSliceLength = 0.5;  ///< of a cylinder's slices at most, in radii
 
-/// A convex piece of a triangle: its corners, in the surface's list of points.
+/// A convex piece of a triangle: its corners, in the cell's list of them.
 struct Piece {
   int first;
   int count;
@@ -35,70 +36,106 @@ struct Piece {
 /// The part of the surface in a cell.
 struct Cell {
   Eigen::AlignedBox3d box;
-  std::vector<Vector3d> points;  ///< corners of the pieces, one piece after the other
+  std::vector<Vector3d> points;  ///< of the pieces, most of them shared by several
+  std::vector<int> corners;      ///< of the pieces, one piece after the other: indices of points
   std::vector<Piece> pieces;
-  std::vector<Vector3d> corners;  ///< of the box, in the solid
+  std::vector<Vector3d> filled;  ///< the corners of the box that lie in the solid
+
+  bool empty() const { return points.empty() && filled.empty(); }
 };
 
-void add_piece(Cell& cell, const Vector3d* corners, int count) {
-  cell.pieces.push_back({static_cast<int>(cell.points.size()), count});
-  cell.points.insert(cell.points.end(), corners, corners + count);
-}
+/// Asks for each point once: neighbouring cells share corners, and so do the ways to divide a cell.
+class RememberedInside {
+ public:
+  explicit RememberedInside(const Inside& inside) : inside_(inside) {}
+  bool operator()(const Vector3d& p) {
+    const auto [entry, added] = known_.try_emplace({p.x(), p.y(), p.z()}, false);
+    if (added) entry->second = inside_(p);
+    return entry->second;
+  }
+
+ private:
+  const Inside& inside_;
+  std::map<std::array<double, 3>, bool> known_;
+};
 
 /// Shrinks the box to the points: the solid inside the cell lies in their convex hull.
-void finish(Cell& cell, const Inside& inside) {
-  cell.corners.clear();
+void finish(Cell& cell, RememberedInside& inside) {
   for (int k = 0; k < 8; ++k) {
     const Vector3d corner = cell.box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(k));
-    if (inside(corner)) cell.corners.push_back(corner);
+    if (inside(corner)) cell.filled.push_back(corner);
   }
   cell.box.setEmpty();
   for (const Vector3d& p : cell.points) cell.box.extend(p);
-  for (const Vector3d& p : cell.corners) cell.box.extend(p);
+  for (const Vector3d& p : cell.filled) cell.box.extend(p);
 }
 
-/// The convex polygon on the side of the plane x[axis] = level that `sign` names; corners on the plane belong to both.
-/// Returns the number of corners.
-int clip(const Vector3d* polygon, int count, int axis, double level, double sign, Vector3d* clipped) {
-  int size = 0;
-  for (int i = 0; i < count; ++i) {
-    const Vector3d& a = polygon[i];
-    const Vector3d& b = polygon[(i + 1) % count];
-    const double da = sign * (a[axis] - level);
-    const double db = sign * (b[axis] - level);
-    if (da >= 0.0) clipped[size++] = a;
-    if ((da > 0.0 && db < 0.0) || (da < 0.0 && db > 0.0)) {
-      Vector3d& cut = clipped[size++];
-      cut = a + (b - a) * (da / (da - db));
-      cut[axis] = level;
-    }
+/// Cuts a cell's pieces by the plane x[axis] = level and collects those on one side of it.
+class Half {
+ public:
+  /// sign: 1 for the side of larger coordinates, -1 for the other.
+  Half(const Cell& whole, int axis, double level, double sign)
+      : whole_(whole), axis_(axis), level_(level), index_(whole.points.size(), kUnknown) {
+    height_.reserve(whole.points.size());
+    for (const Vector3d& p : whole.points) height_.push_back(sign * (p[axis] - level));
+    half_.points.reserve(whole.points.size());
+    half_.corners.reserve(whole.corners.size());
+    half_.pieces.reserve(whole.pieces.size());
+    half_.box = whole.box;
+    (sign < 0.0 ? half_.box.max() : half_.box.min())[axis] = level;
+    for (const Piece& piece : whole.pieces) add(piece);
   }
-  return size;
-}
+  Cell take() { return std::move(half_); }
 
-/// The two halves of a cell.
-std::array<Cell, 2> cut(const Cell& cell, int axis, double level, const Inside& inside) {
-  std::array<Cell, 2> halves;
-  std::vector<Vector3d> clipped;
-  for (std::size_t side = 0; side < 2; ++side) {
-    Cell& half = halves[side];
-    half.box = cell.box;
-    (side == 0 ? half.box.max() : half.box.min())[axis] = level;
-    for (const Piece& piece : cell.pieces) {
-      clipped.resize(2 * static_cast<std::size_t>(piece.count));
-      const int count = clip(&cell.points[static_cast<std::size_t>(piece.first)], piece.count, axis, level,
-                             side == 0 ? -1.0 : 1.0, clipped.data());
-      if (count > 0) add_piece(half, clipped.data(), count);
+ private:
+  static constexpr int kUnknown = -1;
+
+  double height(int point) const { return height_[static_cast<std::size_t>(point)]; }
+
+  void keep(int point) {
+    int& index = index_[static_cast<std::size_t>(point)];
+    if (index == kUnknown) {
+      index = static_cast<int>(half_.points.size());
+      half_.points.push_back(whole_.points[static_cast<std::size_t>(point)]);
     }
-    finish(half, inside);
+    half_.corners.push_back(index);
   }
-  return halves;
-}
+
+  /// Corners on the plane belong to both sides.
+  void add(const Piece& piece) {
+    const int first = static_cast<int>(half_.corners.size());
+    const int* const corners = &whole_.corners[static_cast<std::size_t>(piece.first)];
+    if (std::all_of(corners, corners + piece.count, [this](int corner) { return height(corner) < 0.0; })) return;
+    for (int i = 0; i < piece.count; ++i) {
+      const int a = corners[i];
+      const int b = corners[i + 1 == piece.count ? 0 : i + 1];
+      const double above_a = height(a);
+      const double above_b = height(b);
+      if (above_a >= 0.0) keep(a);
+      if ((above_a > 0.0 && above_b < 0.0) || (above_a < 0.0 && above_b > 0.0)) {
+        const Vector3d& from = whole_.points[static_cast<std::size_t>(a)];
+        const Vector3d& to = whole_.points[static_cast<std::size_t>(b)];
+        Vector3d cut = from + (to - from) * (above_a / (above_a - above_b));
+        cut[axis_] = level_;
+        half_.corners.push_back(static_cast<int>(half_.points.size()));
+        half_.points.push_back(cut);
+      }
+    }
+    half_.pieces.push_back({first, static_cast<int>(half_.corners.size()) - first});
+  }
+
+  const Cell& whole_;
+  int axis_;
+  double level_;
+  std::vector<double> height_;  ///< of the whole's points above the plane, m
+  std::vector<int> index_;      ///< of the whole's points in the half
+  Cell half_;
+};
 
 /// The point of the cell farthest from a center, and its squared distance.
 std::pair<const Vector3d*, double> farthest(const Cell& cell, const Vector3d& center) {
   std::pair<const Vector3d*, double> far{nullptr, -1.0};
-  for (const auto* points : {&cell.points, &cell.corners}) {
+  for (const auto* points : {&cell.points, &cell.filled}) {
     for (const Vector3d& p : *points) {
       const double squared = (p - center).squaredNorm();
       if (squared > far.second) far = {&p, squared};
@@ -107,55 +144,72 @@ std::pair<const Vector3d*, double> farthest(const Cell& cell, const Vector3d& ce
   return far;
 }
 
-/// Points of the cell that are extreme along the axes and diagonals of a cube: their ball is nearly that of all.
-std::vector<Vector3d> extreme_points(const Cell& cell) {
-  std::vector<Vector3d> extremes;
-  for (int code = 14; code < 27; ++code) {  // one of each direction and its opposite
-    const Vector3d direction(code / 9 - 1, code / 3 % 3 - 1, code % 3 - 1);
-    std::pair<const Vector3d*, double> low{nullptr, std::numeric_limits<double>::infinity()};
-    std::pair<const Vector3d*, double> high{nullptr, -std::numeric_limits<double>::infinity()};
-    for (const auto* points : {&cell.points, &cell.corners}) {
-      for (const Vector3d& p : *points) {
-        const double along = direction.dot(p);
-        if (along < low.second) low = {&p, along};
-        if (along > high.second) high = {&p, along};
-      }
+/// Up to four points and the smallest ball with all of them on its surface.
+struct Support {
+  std::array<Vector3d, 4> points;
+  int count = 0;
+  Vector3d center = Vector3d::Zero();
+  double squared = std::numeric_limits<double>::infinity();  ///< radius, m^2
+
+  void add(const Vector3d& p) { points[static_cast<std::size_t>(count++)] = p; }
+
+  /// The center is points[0] + sum_i l_i v_i with v_i = points[i] - points[0], where 2 sum_j (v_i v_j) l_j = v_i v_i.
+  /// NaN or something far away when the points have no such ball.
+  void circumscribe() {
+    using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>;
+    using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1>;
+    Small v(3, count - 1);
+    for (int i = 1; i < count; ++i) v.col(i - 1) = points[static_cast<std::size_t>(i)] - points[0];
+    Vector3d offset = Vector3d::Zero();
+    if (count == 2) offset = 0.5 * v.col(0);
+    if (count > 2) {
+      const Small gram = v.transpose() * v;
+      const Column right = 0.5 * gram.diagonal();
+      offset = v * Column(gram.ldlt().solve(right));
     }
-    extremes.push_back(*low.first);
-    extremes.push_back(*high.first);
+    center = points[0] + offset;
+    squared = offset.squaredNorm();
   }
-  return extremes;
+};
+
+/// The smallest ball around the points of another and one more, which lies outside that and so on the surface of this:
+/// the smallest of the balls through it and up to three of the others that contains all. Unchanged when rounding leaves
+/// none.
+Support pivot(const Support& old, const Vector3d& p) {
+  Support best;
+  for (unsigned chosen = 0; chosen < 1U << old.count; ++chosen) {
+    if (std::popcount(chosen) > 3) continue;
+    Support ball;
+    ball.add(p);
+    for (int i = 0; i < old.count; ++i) {
+      if ((chosen >> i & 1U) != 0) ball.add(old.points[static_cast<std::size_t>(i)]);
+    }
+    ball.circumscribe();
+    if (!(ball.squared < best.squared)) continue;
+    const bool contains = std::all_of(old.points.begin(), old.points.begin() + old.count, [&](const Vector3d& other) {
+      return (other - ball.center).squaredNorm() <= ball.squared * (1.0 + 1e-9);
+    });
+    if (contains) best = ball;
+  }
+  return best.count > 0 ? best : old;
 }
 
-/// Nearly the center of the smallest ball around some points: steps towards the farthest (Badoiu and Clarkson 2003,
-/// "Smaller core-sets for balls").
-Vector3d ball_center(const std::vector<Vector3d>& points, const Vector3d& start) {
-  Vector3d center = start;
-  Vector3d best = start;
-  double least = std::numeric_limits<double>::infinity();
-  for (int i = 1; i <= kCenterSteps; ++i) {
-    const Vector3d* far = nullptr;
-    double squared = -1.0;
-    for (const Vector3d& p : points) {
-      if ((p - center).squaredNorm() > squared) std::tie(far, squared) = std::pair(&p, (p - center).squaredNorm());
-    }
-    if (squared < least) std::tie(best, least) = std::pair(center, squared);
-    center += (*far - center) / (i + 1.0);
-  }
-  return best;
-}
-
-/// A ball around all points of a cell, nearly the smallest: that of a few of them, to which the farthest is added.
+/// A ball around all points of a cell, nearly the smallest: that of a few of them, to which the farthest is added again
+/// and again (Gaertner 1999, "Fast and robust smallest enclosing balls", with the points' plain distances at the end).
 SphereTree::Node ball_of(const Cell& cell) {
-  std::vector<Vector3d> few = extreme_points(cell);
   SphereTree::Node ball{cell.box.center(), 0.0, 0, 0};
   double least = std::numeric_limits<double>::infinity();
-  Vector3d center = ball_center(few, ball.center);
-  for (int round = 0; round < kCoreSetRounds; ++round) {
-    const auto [far, squared] = farthest(cell, center);
-    if (squared < least) std::tie(ball.center, least) = std::pair(center, squared);
-    few.push_back(*far);
-    center = ball_center(few, center);
+  Support support;
+  support.center = ball.center;
+  support.squared = 0.0;
+  for (int i = 0; i < kMostPivots; ++i) {
+    const auto [far, squared] = farthest(cell, support.center);
+    if (squared < least) {
+      least = squared;
+      ball.center = support.center;
+    }
+    if (squared <= support.squared * (1.0 + 2.0 * kLooseness)) break;
+    support = pivot(support, *far);
   }
   ball.radius = std::sqrt(least) * (1.0 + kRounding);
   return ball;
@@ -168,20 +222,21 @@ struct Branch {
   std::array<int, 2> children{-1, -1};
 };
 
-std::array<Branch, 2> divide(const Cell& cell, const Inside& inside) {
+std::array<Branch, 2> divide(const Cell& cell, RememberedInside& inside) {
   std::array<Branch, 2> best;
   double least = std::numeric_limits<double>::infinity();
   const Vector3d size = cell.box.sizes();
   for (int axis = 0; axis < 3; ++axis) {
     if (size[axis] < 0.4 * size.maxCoeff()) continue;
-    std::array<Cell, 2> halves = cut(cell, axis, cell.box.center()[axis], inside);
     std::array<Branch, 2> branches;
     double cost = 0.0;
-    for (std::size_t side = 0; side < 2; ++side) {
-      if (halves[side].points.empty() && halves[side].corners.empty()) continue;
-      branches[side].ball = ball_of(halves[side]);
-      cost += std::pow(branches[side].ball.radius, 3);
-      branches[side].cell = std::move(halves[side]);
+    for (Branch& branch : branches) {
+      const double sign = &branch == branches.data() ? -1.0 : 1.0;
+      branch.cell = Half(cell, axis, cell.box.center()[axis], sign).take();
+      finish(branch.cell, inside);
+      if (branch.cell.empty()) continue;
+      branch.ball = ball_of(branch.cell);
+      cost += std::pow(branch.ball.radius, 3);
     }
     if (cost < least) {
       least = cost;
@@ -191,10 +246,9 @@ std::array<Branch, 2> divide(const Cell& cell, const Inside& inside) {
   return best;
 }
 
-bool empty(const Branch& branch) { return branch.cell.points.empty() && branch.cell.corners.empty(); }
-
 /// Divides the largest ball again and again.
-std::vector<Branch> grow(Branch root, const Inside& inside, const SphereTreeSettings& settings) {
+std::vector<Branch> grow(Branch root, const Inside& asked, const SphereTreeSettings& settings) {
+  RememberedInside inside(asked);
   std::vector<Branch> branches{std::move(root)};
   std::vector<int> leaves{0};
   while (!leaves.empty() && static_cast<int>(leaves.size()) < settings.leaves) {
@@ -207,7 +261,7 @@ std::vector<Branch> grow(Branch root, const Inside& inside, const SphereTreeSett
     leaves.erase(largest);
     branches[parent].cell = {};
     for (std::size_t side = 0; side < 2; ++side) {
-      if (empty(halves[side])) continue;
+      if (halves[side].cell.empty()) continue;
       branches[parent].children[side] = static_cast<int>(branches.size());
       leaves.push_back(static_cast<int>(branches.size()));
       branches.push_back(std::move(halves[side]));
@@ -262,13 +316,18 @@ SphereTree sphere_tree(const TriangleMesh& surface, const Inside& inside, const 
   require(surface.triangles.cols() > 0, "sphere_tree: a surface without triangles");
   require(settings.leaves >= 1 && settings.radius > 0.0, "sphere_tree: leaves must be at least 1, radius positive");
   Branch root;
-  root.cell.points.reserve(3 * static_cast<std::size_t>(surface.triangles.cols()));
+  std::vector<int> index(static_cast<std::size_t>(surface.vertices.cols()), -1);
   for (Eigen::Index f = 0; f < surface.triangles.cols(); ++f) {
-    const std::array<Vector3d, 3> corners{surface.vertices.col(surface.triangles(0, f)),
-                                          surface.vertices.col(surface.triangles(1, f)),
-                                          surface.vertices.col(surface.triangles(2, f))};
-    add_piece(root.cell, corners.data(), 3);
-    for (const Vector3d& p : corners) root.cell.box.extend(p);
+    root.cell.pieces.push_back({static_cast<int>(root.cell.corners.size()), 3});
+    for (const int vertex : surface.triangles.col(f)) {
+      int& known = index[static_cast<std::size_t>(vertex)];
+      if (known < 0) {
+        known = static_cast<int>(root.cell.points.size());
+        root.cell.points.emplace_back(surface.vertices.col(vertex));
+        root.cell.box.extend(root.cell.points.back());
+      }
+      root.cell.corners.push_back(known);
+    }
   }
   root.ball = ball_of(root.cell);  // the solid lies in the convex hull of its surface
   return flatten(grow(std::move(root), inside, settings));
@@ -299,15 +358,18 @@ SphereTree slices(const Cylinder& cylinder, double longest) {
 
 }  // namespace
 
+SphereTree sphere_tree(const TriangleMesh& mesh, const SolidRegion& region, const SphereTreeSettings& settings) {
+  return sphere_tree(
+      mesh, [&](const Vector3d& p) { return region.touches(p); }, settings);
+}
+
 SphereTree sphere_tree(const Shape& shape, const SphereTreeSettings& settings) {
   if (const auto* sphere = std::get_if<Sphere>(&shape)) return {{{Vector3d::Zero(), sphere->radius, 0, 0}}};
   if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
     return slices(*cylinder, std::max(kSliceLength * cylinder->radius, cylinder->length / settings.leaves));
   }
   if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&shape)) {
-    const SolidRegion region(**mesh);
-    return sphere_tree(
-        **mesh, [&](const Vector3d& p) { return region.touches(p); }, settings);
+    return sphere_tree(**mesh, SolidRegion(**mesh), settings);
   }
   // A box is convex and fills its bounding box.
   return sphere_tree(

@@ -33,7 +33,7 @@ struct SphereTreeSettings {
 /// surface's triangles clipped to the cell and those of the cell's corners that lie in the solid. These points span the
 /// convex hull of the solid inside the cell: an extreme point of it is a corner of the cell when it lies inside the
 /// solid, and otherwise a vertex of a clipped triangle. Open components of a mesh are covered as surfaces. A cylinder
-/// is cut across its axis only. Cost: O(F log leaves) for F triangles, and 48 point queries per node.
+/// is cut across its axis only. Cost: O(F log leaves) for F triangles, and up to 20 point queries per node.
 SphereTree sphere_tree(const Shape& shape, const SphereTreeSettings& settings = {});
 
 /// Whether a point belongs to a solid whose surface is given; points nearer to the surface than 1e-7 m may count either
@@ -42,5 +42,10 @@ using Inside = std::function<bool(const Eigen::Vector3d& p)>;
 
 /// The same for any surface. `inside` must be true wherever the solid is, and may be true elsewhere.
 SphereTree sphere_tree(const TriangleMesh& surface, const Inside& inside, const SphereTreeSettings& settings);
+
+class SolidRegion;
+
+/// That of a mesh whose region is known already.
+SphereTree sphere_tree(const TriangleMesh& mesh, const SolidRegion& region, const SphereTreeSettings& settings = {});
 
 }  // namespace opponens::robot
