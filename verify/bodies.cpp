@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <tuple>
 #include <variant>
 
@@ -45,7 +46,8 @@ std::shared_ptr<Surface> surface_of(const robot::TriangleMesh& mesh) {
 /// What equal shapes share.
 struct Made {
   std::shared_ptr<const Solid> solid;
-  std::shared_ptr<Surface> surface;
+  std::shared_ptr<Surface> surface;  ///< null for spheres
+  std::optional<double> sphere;      ///< m, its radius when it is one
 };
 
 double point_box_distance(const Eigen::Vector3d& p_B, const Eigen::Vector3d& half) {
@@ -70,6 +72,15 @@ struct Bodies::Part {
     p_WM = X * middle;
   }
 
+  /// To another part's surface; m, at most `bound`. This one is a sphere.
+  double distance_of_sphere(const Part& other, double bound) const {
+    const Eigen::Vector3d center = other.X_WG.inverse() * X_WG.translation();
+    const double reach = bound + *made.sphere;
+    const double to =
+        other.made.sphere ? center.norm() - *other.made.sphere : other.made.solid->distance(center, reach);
+    return std::clamp(to - *made.sphere, 0.0, bound);
+  }
+
   bool reaches_into(const Part& other) const {
     const Eigen::Isometry3d X = other.X_WG.inverse() * X_WG;
     for (const auto& point : made.solid->component_points().colwise()) {
@@ -92,7 +103,11 @@ struct Bodies::Data {
     Made& shared = made[key_of(geometry.shape)];
     if (!shared.solid) {
       shared.solid = std::make_shared<const Solid>(geometry.shape);
-      shared.surface = surface_of(shared.solid->mesh());
+      if (const auto* sphere = std::get_if<robot::Sphere>(&geometry.shape)) {
+        shared.sphere = sphere->radius;
+      } else {
+        shared.surface = surface_of(shared.solid->mesh());
+      }
     }
     const Eigen::AlignedBox3d& box = shared.solid->bounds();
     const Eigen::Vector3d middle = box.center();
@@ -162,12 +177,31 @@ double Bodies::gap(const Pair& pair, double enough) const {
   return std::max(best, (t_b.cwiseAbs() - b.half - turn.transpose() * a.half).maxCoeff());
 }
 
+Bodies::NearPoints Bodies::points(const Pair& pair) const {
+  const auto any = [&](int part) -> Eigen::Vector3d { return data_->part(part).made.solid->mesh().vertices.col(0); };
+  return {any(pair.first), any(pair.second)};
+}
+
+double Bodies::apart(const Pair& pair, const NearPoints& points) const {
+  return (data_->part(pair.first).X_WG * points.first - data_->part(pair.second).X_WG * points.second).norm();
+}
+
 double Bodies::distance(const Pair& pair, double bound) const {
+  NearPoints unused;
+  return distance(pair, bound, unused);
+}
+
+double Bodies::distance(const Pair& pair, double bound, NearPoints& near) const {
   const Part& a = data_->part(pair.first);
   const Part& b = data_->part(pair.second);
-  const fcl::DistanceRequestd request;
+  if (a.made.sphere) return a.distance_of_sphere(b, bound);
+  if (b.made.sphere) return b.distance_of_sphere(a, bound);
+  const fcl::DistanceRequestd request(true);
   fcl::DistanceResultd result(bound);  // only nearer pairs of triangles are descended to
   fcl::distance(a.made.surface.get(), a.X_WG, b.made.surface.get(), b.X_WG, request, result);
+  if (result.min_distance < bound) {
+    near = {a.X_WG.inverse() * result.nearest_points[0], b.X_WG.inverse() * result.nearest_points[1]};
+  }
   return std::clamp(result.min_distance, 0.0, bound);
 }
 

@@ -29,6 +29,7 @@ PathProof::PathProof(const robot::RobotModel& robot, const robot::MotionBound& b
     const NamePair names{bodies.name(pair.first), bodies.name(pair.second)};
     found_of_.push_back(&found_[names]);
     const bool contact = bodies.link(pair.second) < 0 && contacts.count(names) == 1;
+    near_.push_back(bodies.points(pair));
     contact_.push_back(contact ? &touching_[names] : nullptr);
   }
   all_.resize(found_of_.size());
@@ -57,6 +58,14 @@ void PathProof::note(Found& found, double distance, const Place& place) {
   if (distance == 0.0) proven_clearance_ = 0.0;
 }
 
+/// The distance of a pair, or `bound` when it is not nearer than that. What is nearer is noted.
+double PathProof::distance(std::size_t pair, double bound, const Place& place) {
+  ++distances_;
+  const double distance = bodies_.distance(bodies_.pairs()[pair], bound, near_[pair]);
+  if (distance < bound) note(*found_of_[pair], distance, place);
+  return distance;
+}
+
 void PathProof::visit(const Eigen::VectorXd& q, int waypoint, bool closing, bool first) {
   place(q);
   const Place here{waypoint, 1.0};
@@ -69,10 +78,7 @@ void PathProof::visit(const Eigen::VectorXd& q, int waypoint, bool closing, bool
     const double bound = std::max(worst_, settings_.clearance);
     const double gap = bodies_.gap(pair, bound);
     if (first && gap == 0.0 && bodies_.contained(pair)) note(*found_of_[i], 0.0, here);
-    if (gap >= bound || found_of_[i]->distance == 0.0) continue;
-    ++distances_;
-    const double distance = bodies_.distance(pair, bound);
-    if (distance < bound) note(*found_of_[i], distance, here);
+    if (gap < bound && found_of_[i]->distance > 0.0) distance(i, bound, here);
   }
 }
 
@@ -117,16 +123,17 @@ bool PathProof::settled(std::size_t index, double change, const Place& place) {
   if (found.distance == 0.0) return true;  // nothing worse can be found
   const Bodies::Pair& pair = bodies_.pairs()[index];
   double enough = needed(found) + change;
-  double distance = bodies_.gap(pair, enough);
-  if (distance < enough) {
-    ++distances_;
-    distance = bodies_.distance(pair, enough);
-    if (distance < enough) note(found, distance, place);
+  double gap = bodies_.gap(pair, enough);
+  if (gap < enough) {
+    // Two points too near to each other tell that this piece is halved, however far exactly the surfaces are apart.
+    const double apart = bodies_.apart(pair, near_[index]);
+    if (apart < enough && apart >= worst_ && change > settings_.resolution) return false;
+    gap = distance(index, enough, place);
     enough = needed(found) + change;
   }
-  const bool settled = distance >= enough;
+  const bool settled = gap >= enough;
   if (!settled && change > settings_.resolution) return false;
-  const double proven = std::max(0.0, distance - change);
+  const double proven = std::max(0.0, gap - change);
   proven_clearance_ = std::min(proven_clearance_, proven);
   if (!settled && proven < settings_.clearance) found.proven = false;
   return true;

@@ -76,6 +76,7 @@ class PathProof {
   void place(const Eigen::VectorXd& q);
   bool is_contact(std::size_t pair, bool closing) const { return closing && contact_[pair] != nullptr; }
   double needed(const Found& found) const;
+  double distance(std::size_t pair, double bound, const Place& place);
   void note(Found& found, double distance, const Place& place);
   void divide(const Piece& piece, const std::vector<std::size_t>& pairs);
   bool settled(std::size_t pair, double change, const Place& place);
@@ -88,9 +89,10 @@ class PathProof {
   ProofSettings settings_;
   std::map<NamePair, Found> found_;
   std::map<NamePair, Contact> touching_;
-  std::vector<Found*> found_of_;   ///< [pairs]
-  std::vector<Contact*> contact_;  ///< [pairs] null: not a contact
-  std::vector<std::size_t> all_;   ///< [pairs] their indices
+  std::vector<Found*> found_of_;          ///< [pairs]
+  std::vector<Contact*> contact_;         ///< [pairs] null: not a contact
+  std::vector<Bodies::NearPoints> near_;  ///< [pairs] where they were nearest when last looked at
+  std::vector<std::size_t> all_;          ///< [pairs] their indices
   std::vector<Eigen::Isometry3d> X_RL_;
   robot::LinkTravel travel_;
   double worst_ = std::numeric_limits<double>::infinity();
