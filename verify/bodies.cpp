@@ -72,6 +72,24 @@ struct Bodies::Part {
     p_WM = X * middle;
   }
 
+  /// A vertex that lies near to another part's box, in that part's frame: always the nearer ball of two.
+  Eigen::Vector3d vertex_towards(const Part& other) const {
+    const BallTree& tree = made.solid->tree();
+    const Eigen::Isometry3d X = other.X_WG.inverse() * X_WG;
+    const auto away = [&](int ball) {
+      const Eigen::Vector3d center = X * tree.balls()[static_cast<std::size_t>(ball)].center;
+      return point_box_distance(center - other.middle, other.half);
+    };
+    int ball = 0;
+    while (!tree.balls()[static_cast<std::size_t>(ball)].leaf) {
+      const int one = ball + 1;
+      const int two = tree.balls()[static_cast<std::size_t>(one)].next;
+      ball = away(one) <= away(two) ? one : two;
+    }
+    const int begin = tree.balls()[static_cast<std::size_t>(ball)].begin;
+    return X * tree.corners(tree.order()[static_cast<std::size_t>(begin)]).col(0);
+  }
+
   /// To another part's surface; m, at most `bound`. This one is a sphere.
   double distance_of_sphere(const Part& other, double bound) const {
     const Eigen::Vector3d center = other.X_WG.inverse() * X_WG.translation();
@@ -79,6 +97,16 @@ struct Bodies::Part {
     const double to =
         other.made.sphere ? center.norm() - *other.made.sphere : other.made.solid->distance(center, reach);
     return std::clamp(to - *made.sphere, 0.0, bound);
+  }
+
+  /// This one is a sphere. With its centre outside the other, no point of it is deeper there than the other's nearest
+  /// point is in the sphere. Nothing when the centre is inside.
+  std::optional<double> depth_of_sphere(const Part& other) const {
+    const Eigen::Vector3d center = other.X_WG.inverse() * X_WG.translation();
+    const double r = *made.sphere;
+    if (other.made.solid->inside(center)) return std::nullopt;
+    const double to = other.made.sphere ? center.norm() - *other.made.sphere : other.made.solid->distance(center, r);
+    return std::clamp(r - to, 0.0, r);
   }
 
   bool reaches_into(const Part& other) const {
@@ -186,6 +214,13 @@ double Bodies::apart(const Pair& pair, const NearPoints& points) const {
   return (data_->part(pair.first).X_WG * points.first - data_->part(pair.second).X_WG * points.second).norm();
 }
 
+double Bodies::approach(const Pair& pair, double bound) const {
+  const Part* fine = &data_->part(pair.first);
+  const Part* coarse = &data_->part(pair.second);
+  if (fine->made.solid->mesh().triangles.cols() < coarse->made.solid->mesh().triangles.cols()) std::swap(fine, coarse);
+  return coarse->made.solid->distance(fine->vertex_towards(*coarse), bound);
+}
+
 double Bodies::distance(const Pair& pair, double bound) const {
   NearPoints unused;
   return distance(pair, bound, unused);
@@ -214,6 +249,10 @@ bool Bodies::contained(const Pair& pair) const {
 Depth Bodies::depth(const Pair& pair, double enough) const {
   const Part& a = data_->part(pair.first);
   const Part& b = data_->part(pair.second);
+  std::optional<double> exact;
+  if (a.made.sphere) exact = a.depth_of_sphere(b);
+  if (!exact && b.made.sphere) exact = b.depth_of_sphere(a);
+  if (exact) return {*exact, *exact};
   const Eigen::Isometry3d X_BA = b.X_WG.inverse() * a.X_WG;
   Depth one = penetration(*a.made.solid, *b.made.solid, X_BA, enough);
   const Depth other = penetration(*b.made.solid, *a.made.solid, X_BA.inverse(), enough);

@@ -55,6 +55,9 @@ class Bodies {
   double distance(const Pair& pair, double bound) const;
   /// The same; where it is FCL's and below `bound`, `near` is set to where the surfaces are nearest to each other.
   double distance(const Pair& pair, double bound, NearPoints& near) const;
+  /// m, of a vertex of the finer surface that lies near to the other's box, from that other surface; `bound` when that
+  /// is less. The distance does not exceed it, and it costs little.
+  double approach(const Pair& pair, double bound) const;
   /// m, between two points of a pair, which its distance does not exceed.
   double apart(const Pair& pair, const NearPoints& points) const;
   /// Whether a component of one lies inside the other, given that the surfaces are apart.

@@ -32,6 +32,7 @@ PathProof::PathProof(const robot::RobotModel& robot, const robot::MotionBound& b
     near_.push_back(bodies.points(pair));
     contact_.push_back(contact ? &touching_[names] : nullptr);
   }
+  depth_.resize(found_of_.size(), 0.0);
   all_.resize(found_of_.size());
   std::iota(all_.begin(), all_.end(), 0);
 }
@@ -86,6 +87,7 @@ void PathProof::look_at_contact(std::size_t pair, const Place& place) {
   Contact& contact = *contact_[pair];
   if (bodies_.gap(bodies_.pairs()[pair], 0.0) > 0.0 || contact.attained > settings_.max_penetration) return;
   const double depth = bodies_.depth(bodies_.pairs()[pair], 0.0).attained;
+  depth_[pair] = depth;
   if (depth > contact.attained) contact = {depth, std::max(contact.proven, depth), place};
   deepest_ = std::max(deepest_, depth);
 }
@@ -126,7 +128,8 @@ bool PathProof::settled(std::size_t index, double change, const Place& place) {
   double gap = bodies_.gap(pair, enough);
   if (gap < enough) {
     // Two points too near to each other tell that this piece is halved, however far exactly the surfaces are apart.
-    const double apart = bodies_.apart(pair, near_[index]);
+    double apart = bodies_.apart(pair, near_[index]);
+    if (apart >= enough) apart = bodies_.approach(pair, enough);
     if (apart < enough && apart >= worst_ && change > settings_.resolution) return false;
     gap = distance(index, enough, place);
     enough = needed(found) + change;
@@ -155,7 +158,10 @@ bool PathProof::contact_settled(std::size_t index, double change, const Place& p
   const double distance = bodies_.distance(pair, change);
   if (distance > 0.0 && change - distance <= allowed && !bodies_.contained(pair)) return settle(change - distance);
   if (change > allowed && change > settings_.resolution) return false;
+  // As deep as where it was last looked at, this piece would be halved.
+  if (depth_[index] + change > allowed && change > settings_.resolution) return false;
   const Depth depth = bodies_.depth(pair, allowed - change);
+  depth_[index] = depth.attained;
   if (depth.attained > contact.attained) {
     contact.attained = depth.attained;
     contact.place = place;

@@ -92,6 +92,7 @@ class PathProof {
   std::vector<Found*> found_of_;          ///< [pairs]
   std::vector<Contact*> contact_;         ///< [pairs] null: not a contact
   std::vector<Bodies::NearPoints> near_;  ///< [pairs] where they were nearest when last looked at
+  std::vector<double> depth_;             ///< [pairs] m, of contacts when last looked at
   std::vector<std::size_t> all_;          ///< [pairs] their indices
   std::vector<Eigen::Isometry3d> X_RL_;
   robot::LinkTravel travel_;
