@@ -58,9 +58,8 @@ class Search {
     const double apart = (p - near.p).norm();
     // From a probe near by follow a limit for the search in the tree, and often the side.
     const double limit = near.distance + apart + 1e-9;
-    const double distance = B_.distance(p, std::min(limit, radius));
     const bool inside = apart < near.distance ? near.inside : B_.inside(p);
-    return {p, inside && distance == radius ? B_.distance(p, limit) : distance, inside};
+    return {p, B_.distance(p, inside ? limit : std::min(limit, radius)), inside};
   }
 
   /// Pieces that lie outside as a whole are of no interest.
