@@ -90,12 +90,13 @@ struct Bodies::Part {
     return X * tree.corners(tree.order()[static_cast<std::size_t>(begin)]).col(0);
   }
 
-  /// To another part's surface; m, at most `bound`. This one is a sphere.
+  /// This one is a sphere: from it to another part's surface; m, at most `bound`; 0 when it holds the other.
   double distance_of_sphere(const Part& other, double bound) const {
     const Eigen::Vector3d center = other.X_WG.inverse() * X_WG.translation();
     const double reach = bound + *made.sphere;
     const double to =
         other.made.sphere ? center.norm() - *other.made.sphere : other.made.solid->distance(center, reach);
+    if (to >= reach) return bound;  // exactly: reach less the radius may be rounded to less
     return std::clamp(to - *made.sphere, 0.0, bound);
   }
 

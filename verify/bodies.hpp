@@ -18,8 +18,8 @@
 namespace opponens::verify {
 
 /// verify's own collision world: every geometry of robot and scene as triangles that contain it (circumscribed), with
-/// an FCL tree, a bounding ball and a bounding box; equal shapes share theirs. Built once for a robot and a scene;
-/// place() moves it. Both are referred to and must outlive it.
+/// an FCL tree (spheres are a centre and a radius instead), a bounding ball and a bounding box; equal shapes share
+/// theirs. Built once for a robot and a scene; place() moves it. Both are referred to and must outlive it.
 class Bodies {
  public:
   Bodies(const robot::RobotModel& robot, const robot::Scene& scene);

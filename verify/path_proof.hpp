@@ -35,8 +35,8 @@ struct Place {
 /// Proves what a path keeps away from, by conservative advancement: a pair whose distance is d in the middle of a piece
 /// of a segment, and whose distance changes by at most h between there and the piece's ends (robot::MotionBound), keeps
 /// d - h on it; where that is not enough the piece is halved, for the pairs that need it. Bounding volumes first, then
-/// fcl::distance, looked for only below what is needed. Solids inside each other are found at the first waypoint: after
-/// that their surfaces would have to meet.
+/// fcl::distance, looked for only below what is needed and not where a cheap upper bound tells that the piece is
+/// halved. Solids inside each other are found at the first waypoint: after that their surfaces would have to meet.
 class PathProof {
  public:
   using NamePair = std::pair<std::string, std::string>;  ///< link, and link or scene body
