@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <tuple>
 #include <variant>
 
@@ -45,7 +46,8 @@ std::shared_ptr<Surface> surface_of(const robot::TriangleMesh& mesh) {
 /// What equal shapes share.
 struct Made {
   std::shared_ptr<const Solid> solid;
-  std::shared_ptr<Surface> surface;
+  std::shared_ptr<Surface> surface;  ///< null for spheres
+  std::optional<double> sphere;      ///< m, its radius when it is one
 };
 
 double point_box_distance(const Eigen::Vector3d& p_B, const Eigen::Vector3d& half) {
@@ -70,6 +72,44 @@ struct Bodies::Part {
     p_WM = X * middle;
   }
 
+  /// A vertex that lies near to another part's box, in that part's frame: always the nearer ball of two.
+  Eigen::Vector3d vertex_towards(const Part& other) const {
+    const BallTree& tree = made.solid->tree();
+    const Eigen::Isometry3d X = other.X_WG.inverse() * X_WG;
+    const auto away = [&](int ball) {
+      const Eigen::Vector3d center = X * tree.balls()[static_cast<std::size_t>(ball)].center;
+      return point_box_distance(center - other.middle, other.half);
+    };
+    int ball = 0;
+    while (!tree.balls()[static_cast<std::size_t>(ball)].leaf) {
+      const int one = ball + 1;
+      const int two = tree.balls()[static_cast<std::size_t>(one)].next;
+      ball = away(one) <= away(two) ? one : two;
+    }
+    const int begin = tree.balls()[static_cast<std::size_t>(ball)].begin;
+    return X * tree.corners(tree.order()[static_cast<std::size_t>(begin)]).col(0);
+  }
+
+  /// This one is a sphere: from it to another part's surface; m, at most `bound`; 0 when it holds the other.
+  double distance_of_sphere(const Part& other, double bound) const {
+    const Eigen::Vector3d center = other.X_WG.inverse() * X_WG.translation();
+    const double reach = bound + *made.sphere;
+    const double to =
+        other.made.sphere ? center.norm() - *other.made.sphere : other.made.solid->distance(center, reach);
+    if (to >= reach) return bound;  // exactly: reach less the radius may be rounded to less
+    return std::clamp(to - *made.sphere, 0.0, bound);
+  }
+
+  /// This one is a sphere. With its centre outside the other, no point of it is deeper there than the other's nearest
+  /// point is in the sphere. Nothing when the centre is inside.
+  std::optional<double> depth_of_sphere(const Part& other) const {
+    const Eigen::Vector3d center = other.X_WG.inverse() * X_WG.translation();
+    const double r = *made.sphere;
+    if (other.made.solid->inside(center)) return std::nullopt;
+    const double to = other.made.sphere ? center.norm() - *other.made.sphere : other.made.solid->distance(center, r);
+    return std::clamp(r - to, 0.0, r);
+  }
+
   bool reaches_into(const Part& other) const {
     const Eigen::Isometry3d X = other.X_WG.inverse() * X_WG;
     for (const auto& point : made.solid->component_points().colwise()) {
@@ -92,7 +132,11 @@ struct Bodies::Data {
     Made& shared = made[key_of(geometry.shape)];
     if (!shared.solid) {
       shared.solid = std::make_shared<const Solid>(geometry.shape);
-      shared.surface = surface_of(shared.solid->mesh());
+      if (const auto* sphere = std::get_if<robot::Sphere>(&geometry.shape)) {
+        shared.sphere = sphere->radius;
+      } else {
+        shared.surface = surface_of(shared.solid->mesh());
+      }
     }
     const Eigen::AlignedBox3d& box = shared.solid->bounds();
     const Eigen::Vector3d middle = box.center();
@@ -162,12 +206,38 @@ double Bodies::gap(const Pair& pair, double enough) const {
   return std::max(best, (t_b.cwiseAbs() - b.half - turn.transpose() * a.half).maxCoeff());
 }
 
+Bodies::NearPoints Bodies::points(const Pair& pair) const {
+  const auto any = [&](int part) -> Eigen::Vector3d { return data_->part(part).made.solid->mesh().vertices.col(0); };
+  return {any(pair.first), any(pair.second)};
+}
+
+double Bodies::apart(const Pair& pair, const NearPoints& points) const {
+  return (data_->part(pair.first).X_WG * points.first - data_->part(pair.second).X_WG * points.second).norm();
+}
+
+double Bodies::approach(const Pair& pair, double bound) const {
+  const Part* fine = &data_->part(pair.first);
+  const Part* coarse = &data_->part(pair.second);
+  if (fine->made.solid->mesh().triangles.cols() < coarse->made.solid->mesh().triangles.cols()) std::swap(fine, coarse);
+  return coarse->made.solid->distance(fine->vertex_towards(*coarse), bound);
+}
+
 double Bodies::distance(const Pair& pair, double bound) const {
+  NearPoints unused;
+  return distance(pair, bound, unused);
+}
+
+double Bodies::distance(const Pair& pair, double bound, NearPoints& near) const {
   const Part& a = data_->part(pair.first);
   const Part& b = data_->part(pair.second);
-  const fcl::DistanceRequestd request;
+  if (a.made.sphere) return a.distance_of_sphere(b, bound);
+  if (b.made.sphere) return b.distance_of_sphere(a, bound);
+  const fcl::DistanceRequestd request(true);
   fcl::DistanceResultd result(bound);  // only nearer pairs of triangles are descended to
   fcl::distance(a.made.surface.get(), a.X_WG, b.made.surface.get(), b.X_WG, request, result);
+  if (result.min_distance < bound) {
+    near = {a.X_WG.inverse() * result.nearest_points[0], b.X_WG.inverse() * result.nearest_points[1]};
+  }
   return std::clamp(result.min_distance, 0.0, bound);
 }
 
@@ -180,6 +250,10 @@ bool Bodies::contained(const Pair& pair) const {
 Depth Bodies::depth(const Pair& pair, double enough) const {
   const Part& a = data_->part(pair.first);
   const Part& b = data_->part(pair.second);
+  std::optional<double> exact;
+  if (a.made.sphere) exact = a.depth_of_sphere(b);
+  if (!exact && b.made.sphere) exact = b.depth_of_sphere(a);
+  if (exact) return {*exact, *exact};
   const Eigen::Isometry3d X_BA = b.X_WG.inverse() * a.X_WG;
   Depth one = penetration(*a.made.solid, *b.made.solid, X_BA, enough);
   const Depth other = penetration(*b.made.solid, *a.made.solid, X_BA.inverse(), enough);

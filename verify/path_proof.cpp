@@ -29,8 +29,10 @@ PathProof::PathProof(const robot::RobotModel& robot, const robot::MotionBound& b
     const NamePair names{bodies.name(pair.first), bodies.name(pair.second)};
     found_of_.push_back(&found_[names]);
     const bool contact = bodies.link(pair.second) < 0 && contacts.count(names) == 1;
+    near_.push_back(bodies.points(pair));
     contact_.push_back(contact ? &touching_[names] : nullptr);
   }
+  depth_.resize(found_of_.size(), 0.0);
   all_.resize(found_of_.size());
   std::iota(all_.begin(), all_.end(), 0);
 }
@@ -57,6 +59,14 @@ void PathProof::note(Found& found, double distance, const Place& place) {
   if (distance == 0.0) proven_clearance_ = 0.0;
 }
 
+/// The distance of a pair, or `bound` when it is not nearer than that. What is nearer is noted.
+double PathProof::distance(std::size_t pair, double bound, const Place& place) {
+  ++distances_;
+  const double distance = bodies_.distance(bodies_.pairs()[pair], bound, near_[pair]);
+  if (distance < bound) note(*found_of_[pair], distance, place);
+  return distance;
+}
+
 void PathProof::visit(const Eigen::VectorXd& q, int waypoint, bool closing, bool first) {
   place(q);
   const Place here{waypoint, 1.0};
@@ -69,10 +79,7 @@ void PathProof::visit(const Eigen::VectorXd& q, int waypoint, bool closing, bool
     const double bound = std::max(worst_, settings_.clearance);
     const double gap = bodies_.gap(pair, bound);
     if (first && gap == 0.0 && bodies_.contained(pair)) note(*found_of_[i], 0.0, here);
-    if (gap >= bound || found_of_[i]->distance == 0.0) continue;
-    ++distances_;
-    const double distance = bodies_.distance(pair, bound);
-    if (distance < bound) note(*found_of_[i], distance, here);
+    if (gap < bound && found_of_[i]->distance > 0.0) distance(i, bound, here);
   }
 }
 
@@ -80,6 +87,7 @@ void PathProof::look_at_contact(std::size_t pair, const Place& place) {
   Contact& contact = *contact_[pair];
   if (bodies_.gap(bodies_.pairs()[pair], 0.0) > 0.0 || contact.attained > settings_.max_penetration) return;
   const double depth = bodies_.depth(bodies_.pairs()[pair], 0.0).attained;
+  depth_[pair] = depth;
   if (depth > contact.attained) contact = {depth, std::max(contact.proven, depth), place};
   deepest_ = std::max(deepest_, depth);
 }
@@ -117,16 +125,18 @@ bool PathProof::settled(std::size_t index, double change, const Place& place) {
   if (found.distance == 0.0) return true;  // nothing worse can be found
   const Bodies::Pair& pair = bodies_.pairs()[index];
   double enough = needed(found) + change;
-  double distance = bodies_.gap(pair, enough);
-  if (distance < enough) {
-    ++distances_;
-    distance = bodies_.distance(pair, enough);
-    if (distance < enough) note(found, distance, place);
+  double gap = bodies_.gap(pair, enough);
+  if (gap < enough) {
+    // Two points too near to each other tell that this piece is halved, however far exactly the surfaces are apart.
+    double apart = bodies_.apart(pair, near_[index]);
+    if (apart >= enough) apart = bodies_.approach(pair, enough);
+    if (apart < enough && apart >= worst_ && change > settings_.resolution) return false;
+    gap = distance(index, enough, place);
     enough = needed(found) + change;
   }
-  const bool settled = distance >= enough;
+  const bool settled = gap >= enough;
   if (!settled && change > settings_.resolution) return false;
-  const double proven = std::max(0.0, distance - change);
+  const double proven = std::max(0.0, gap - change);
   proven_clearance_ = std::min(proven_clearance_, proven);
   if (!settled && proven < settings_.clearance) found.proven = false;
   return true;
@@ -148,7 +158,10 @@ bool PathProof::contact_settled(std::size_t index, double change, const Place& p
   const double distance = bodies_.distance(pair, change);
   if (distance > 0.0 && change - distance <= allowed && !bodies_.contained(pair)) return settle(change - distance);
   if (change > allowed && change > settings_.resolution) return false;
+  // As deep as where it was last looked at, this piece would be halved.
+  if (depth_[index] + change > allowed && change > settings_.resolution) return false;
   const Depth depth = bodies_.depth(pair, allowed - change);
+  depth_[index] = depth.attained;
   if (depth.attained > contact.attained) {
     contact.attained = depth.attained;
     contact.place = place;

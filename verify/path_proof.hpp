@@ -35,8 +35,8 @@ struct Place {
 /// Proves what a path keeps away from, by conservative advancement: a pair whose distance is d in the middle of a piece
 /// of a segment, and whose distance changes by at most h between there and the piece's ends (robot::MotionBound), keeps
 /// d - h on it; where that is not enough the piece is halved, for the pairs that need it. Bounding volumes first, then
-/// fcl::distance, looked for only below what is needed. Solids inside each other are found at the first waypoint: after
-/// that their surfaces would have to meet.
+/// fcl::distance, looked for only below what is needed and not where a cheap upper bound tells that the piece is
+/// halved. Solids inside each other are found at the first waypoint: after that their surfaces would have to meet.
 class PathProof {
  public:
   using NamePair = std::pair<std::string, std::string>;  ///< link, and link or scene body
@@ -76,6 +76,7 @@ class PathProof {
   void place(const Eigen::VectorXd& q);
   bool is_contact(std::size_t pair, bool closing) const { return closing && contact_[pair] != nullptr; }
   double needed(const Found& found) const;
+  double distance(std::size_t pair, double bound, const Place& place);
   void note(Found& found, double distance, const Place& place);
   void divide(const Piece& piece, const std::vector<std::size_t>& pairs);
   bool settled(std::size_t pair, double change, const Place& place);
@@ -88,9 +89,11 @@ class PathProof {
   ProofSettings settings_;
   std::map<NamePair, Found> found_;
   std::map<NamePair, Contact> touching_;
-  std::vector<Found*> found_of_;   ///< [pairs]
-  std::vector<Contact*> contact_;  ///< [pairs] null: not a contact
-  std::vector<std::size_t> all_;   ///< [pairs] their indices
+  std::vector<Found*> found_of_;          ///< [pairs]
+  std::vector<Contact*> contact_;         ///< [pairs] null: not a contact
+  std::vector<Bodies::NearPoints> near_;  ///< [pairs] where they were nearest when last looked at
+  std::vector<double> depth_;             ///< [pairs] m, of contacts when last looked at
+  std::vector<std::size_t> all_;          ///< [pairs] their indices
   std::vector<Eigen::Isometry3d> X_RL_;
   robot::LinkTravel travel_;
   double worst_ = std::numeric_limits<double>::infinity();

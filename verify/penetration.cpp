@@ -53,11 +53,13 @@ class Search {
   }
 
  private:
-  Probe probe(const Eigen::Vector3d& p, const Probe& near) const {
+  /// Of the middle of a piece. Outside and at least its radius away, its distance is given as that radius.
+  Probe probe(const Eigen::Vector3d& p, double radius, const Probe& near) const {
     const double apart = (p - near.p).norm();
     // From a probe near by follow a limit for the search in the tree, and often the side.
-    const double distance = B_.distance(p, near.distance + apart + 1e-9);
-    return {p, distance, apart < near.distance ? near.inside : B_.inside(p)};
+    const double limit = near.distance + apart + 1e-9;
+    const bool inside = apart < near.distance ? near.inside : B_.inside(p);
+    return {p, B_.distance(p, inside ? limit : std::min(limit, radius)), inside};
   }
 
   /// Pieces that lie outside as a whole are of no interest.
@@ -67,14 +69,15 @@ class Search {
 
   void push_ball(int index, const Probe& near) {
     const BallTree::Ball& ball = A_.tree().balls()[static_cast<std::size_t>(index)];
-    push(probe(X_BA_ * ball.center, near), ball.radius, index, Eigen::Matrix3d::Zero());
+    push(probe(X_BA_ * ball.center, ball.radius, near), ball.radius, index, Eigen::Matrix3d::Zero());
   }
 
   void push_triangle(const Eigen::Matrix3d& corners, const Probe& near) {
     const Eigen::Vector3d middle = corners.rowwise().mean();
-    const Probe at = probe(middle, near);
+    const double radius = (corners.colwise() - middle).colwise().norm().maxCoeff();
+    const Probe at = probe(middle, radius, near);
     attained_ = std::max(attained_, at.depth());
-    push(at, (corners.colwise() - middle).colwise().norm().maxCoeff(), -1, corners);
+    push(at, radius, -1, corners);
   }
 
   void unfold(const Piece& piece) {

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The opponens authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes the planned paths of a store as JSON for verify_benchmark: record_paths.py OPPONENS STORE COUNT OUT"""
+"""COUNT planned paths, evenly out of a store, as JSON for verify_benchmark: record_paths.py OPPONENS STORE COUNT OUT"""
 import json
 import subprocess
 import sys
@@ -15,7 +15,8 @@ def show(program, store, *what):
 def main():
     program, store, count, out = sys.argv[1:]
     paths = []
-    for one in show(program, store, "--kind", "path")["objects"][:int(count)]:
+    stored = show(program, store, "--kind", "path")["objects"]
+    for one in stored[::max(1, len(stored) // int(count))][:int(count)]:
         fields = show(program, store, one["id"])["object"]["fields"]
         grasp = show(program, store, fields["goal_grasp"])["object"]["fields"]
         links = sorted(set(grasp["contact.link"]))

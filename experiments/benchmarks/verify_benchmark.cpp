@@ -93,6 +93,7 @@ void check(benchmark::State& state, Setting (*make)(), const char* file, bool sh
       configurations += static_cast<double>(verdict.checked);
       distances += static_cast<double>(verdict.distances);
       failed += verdict.ok ? 0.0 : 1.0;
+      if (!verdict.ok) state.SetLabel("path " + std::to_string(i) + ": " + verdict.reasons.front());
     }
   }
   const auto paths = static_cast<double>(recorded.paths.size());

@@ -118,11 +118,71 @@ TEST(Bodies, MeshDistanceIsThatOfAllTriangles) {
     for (const auto& pair : bodies.pairs()) {
       if (bodies.name(pair.first) != "palm") continue;
       const double distance = bodies.distance(pair, 10.0);
+      Bodies::NearPoints near = bodies.points(pair);
+      EXPECT_GE(bodies.apart(pair, near), least - 1e-12);
+      EXPECT_GE(bodies.approach(pair, 10.0), distance - 1e-12);
+      EXPECT_LE(bodies.approach(pair, 10.0), distance + 0.062);  // a leaf spans two edges of 31 mm
+      EXPECT_EQ(bodies.distance(pair, 10.0, near), distance);
+      EXPECT_NEAR(bodies.apart(pair, near), distance, 1e-9);  // FCL's points are where it says
+      EXPECT_NEAR(solid.distance(near.first), 0.0, 1e-9);
+      EXPECT_NEAR(solid.distance(near.second), 0.0, 1e-9);
+      const Bodies::NearPoints kept = near;
+      EXPECT_EQ(bodies.distance(pair, 0.5 * distance, near), 0.5 * distance);
+      EXPECT_EQ(near.first, kept.first);  // nothing nearer, nothing new
       ASSERT_LE(distance, least + 1e-12);
       ASSERT_GE(distance, least - 2e-5);  // a twentieth of an edge of 30 mm, 20 mm away or more
       EXPECT_EQ(bodies.distance(pair, 0.5 * least), 0.5 * least);
     }
   }
+}
+
+/// A ball of 50 mm whose centre stands at x from the origin, and another body there.
+struct BallAgainst {
+  BallAgainst(const robot::Shape& shape, double x) : scene(alone(shape)) {
+    bodies.place(robot.link_poses(Eigen::Vector3d(x, 0, 0.9)));
+    for (const auto& one : bodies.pairs()) {
+      if (bodies.name(one.first) == "palm" && bodies.link(one.second) < 0) pair = one;
+    }
+  }
+  static robot::Scene alone(const robot::Shape& shape) {
+    robot::Scene made;
+    made.bodies = {body("other", shape, {0, 0, 0})};
+    return made;
+  }
+  double distance() const { return bodies.distance(pair, 10.0); }
+  double depth() const { return bodies.depth(pair, 0.0).attained; }
+
+  robot::RobotModel robot = gantry();
+  robot::Scene scene;
+  Bodies bodies{robot, scene};
+  Bodies::Pair pair{};
+};
+
+TEST(Bodies, ABallIsItsCentreAndRadius) {
+  const robot::Box box{Eigen::Vector3d(0.2, 0.4, 0.4)};
+  EXPECT_NEAR(BallAgainst(box, 0.25).distance(), 0.1, 1e-12);
+  EXPECT_NEAR(BallAgainst(robot::Sphere{0.1}, 0.25).distance(), 0.1, 1e-12);
+  EXPECT_NEAR(BallAgainst(robot::Cylinder{0.1, 0.4}, 0.25).distance(), 0.1 - 1e-5, 1.1e-5);
+  EXPECT_EQ(BallAgainst(box, 0.25).depth(), 0.0);
+  const BallAgainst far(box, 0.25);
+  for (int k = 1; k < 1000; ++k) {  // what is not nearer than the bound is told by the bound itself
+    const double bound = 0.0999 * k / 1000.0;
+    EXPECT_EQ(far.bodies.distance(far.pair, bound), bound);
+  }
+  EXPECT_EQ(BallAgainst(box, 0.149).distance(), 0.0);
+  EXPECT_NEAR(BallAgainst(box, 0.149).depth(), 0.001, 1e-12);
+  EXPECT_NEAR(BallAgainst(robot::Sphere{0.1}, 0.149).depth(), 0.001, 1e-12);
+  EXPECT_NEAR(BallAgainst(box, 0.06).depth(), 0.09, 1e-4);  // its centre inside: 0.1 - 0.06 + 0.05, from all triangles
+}
+
+TEST(Bodies, ABallInAHallIsContained) {
+  const BallAgainst hall(robot::Box{Eigen::Vector3d(3, 3, 3)}, 0.0);
+  EXPECT_NEAR(hall.distance(), 1.45, 1e-12);
+  EXPECT_TRUE(hall.bodies.contained(hall.pair));
+  // A small body in the ball: there is no surface of the ball near, but nothing lets it pass.
+  EXPECT_EQ(BallAgainst(robot::Box{Eigen::Vector3d(0.01, 0.01, 0.01)}, 0.0).distance(), 0.0);
+  EXPECT_EQ(BallAgainst(robot::Sphere{0.01}, 0.0).distance(), 0.0);
+  EXPECT_EQ(BallAgainst(robot::Sphere{0.2}, 0.0).distance(), 0.0);
 }
 
 }  // namespace

