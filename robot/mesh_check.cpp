@@ -112,7 +112,8 @@ std::string unit_of_scale(double scale) {
 std::string size_defect(const MeshReport& report) {
   const double longest = report.extent.maxCoeff();
   if (longest >= kShortest && longest <= kLongest) return "";
-  std::string sentence = "is " + text(longest) + " m long: a wrong unit?";
+  std::string sentence = "is ";
+  sentence += text(longest) + " m long: a wrong unit?";
   for (const double scale : report.likely_scales) {
     sentence += " " + unit_of_scale(scale) + " it would be " + text(longest * scale) + " m;";
   }

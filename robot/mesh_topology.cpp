@@ -31,11 +31,11 @@ bool runs_forward(const TriangleMesh& mesh, int triangle, const MeshEdge& edge) 
   return false;
 }
 
-using Corners = std::array<int, 3>;
+using VertexTriple = std::array<int, 3>;
 
 /// A triangle's vertices from the lowest on, in its order.
-Corners corners_from_lowest(const TriangleMesh& mesh, Eigen::Index triangle) {
-  Corners corners{mesh.triangles(0, triangle), mesh.triangles(1, triangle), mesh.triangles(2, triangle)};
+VertexTriple corners_from_lowest(const TriangleMesh& mesh, Eigen::Index triangle) {
+  VertexTriple corners{mesh.triangles(0, triangle), mesh.triangles(1, triangle), mesh.triangles(2, triangle)};
   std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
   return corners;
 }
@@ -175,10 +175,10 @@ std::vector<int> first_close_vertex(const TriangleMesh& mesh, double tolerance) 
 
 RepeatedTriangles repeated_triangles(const TriangleMesh& mesh) {
   constexpr double kFinShare = 1e-3;
-  std::map<Corners, std::vector<Eigen::Index>> same;
+  std::map<VertexTriple, std::vector<Eigen::Index>> same;
   double area = 0.0;
   for (Eigen::Index f = 0; f < mesh.triangles.cols(); ++f) {
-    Corners corners = corners_from_lowest(mesh, f);
+    VertexTriple corners = corners_from_lowest(mesh, f);
     std::sort(corners.begin(), corners.end());
     same[corners].push_back(f);
     area += area_of(mesh, f);

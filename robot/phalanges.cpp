@@ -147,8 +147,6 @@ double likeness(const FingerBones& a, const FingerBones& b) {
   return x.side.dot(y.side) + x.bone.dot(y.bone);
 }
 
-Vector3d end_of(const FingerBones& finger) { return finger.phalanges.back().body.vertices.rowwise().mean(); }
-
 /// The finger unlike all others; -1 when none stands out.
 int odd_one_out(const std::vector<FingerBones>& fingers) {
   constexpr double kStandsOut = 0.5;  // of a mean likeness, which lies in [-2, 2]
@@ -173,7 +171,7 @@ void name_by_place(const RobotModel& robot, std::vector<FingerBones>& fingers) {
   FingerBones& first = fingers[static_cast<std::size_t>(thumb)];
   std::vector<std::pair<double, FingerBones*>> others;
   for (FingerBones& finger : fingers) {
-    if (&finger != &first) others.emplace_back((end_of(finger) - end_of(first)).norm(), &finger);
+    if (&finger != &first) others.emplace_back((finger.end() - first.end()).norm(), &finger);
   }
   // Fingers as far from the thumb as each other, to the millimetre, stay in the file's order.
   std::stable_sort(others.begin(), others.end(),

@@ -32,6 +32,9 @@ struct FingerBones {
   std::vector<int> joints;         ///< all its moving joints, indices into the description, palm first
   std::vector<Phalanx> phalanges;  ///< palm first; empty when no body of the finger has geometry
   std::vector<std::string> notes;
+
+  /// Middle of the last phalanx's surface; phalanges must not be empty.
+  Eigen::Vector3d end() const { return phalanges.back().body.vertices.rowwise().mean(); }
 };
 
 /// Directions of the palm that the fingers tell (thumbs are asked only where there is nothing else), unit, in the palm

@@ -43,8 +43,6 @@ void copy_phalanges(const RobotModel& robot, const FingerBones& finger, const st
   }
 }
 
-Eigen::Vector3d end_of(const FingerBones& finger) { return finger.phalanges.back().body.vertices.rowwise().mean(); }
-
 /// Whether the thumb ends on the other side of the fingers than a right hand's. y: from the little finger's side to the
 /// thumb's in a right hand's palm, unit.
 bool is_left(const std::vector<FingerBones>& fingers, const Eigen::Vector3d& y) {
@@ -54,8 +52,8 @@ bool is_left(const std::vector<FingerBones>& fingers, const Eigen::Vector3d& y) 
   int count = 0;
   for (const FingerBones& finger : fingers) {
     if (finger.phalanges.empty()) continue;
-    if (finger.thumb) thumb = y.dot(end_of(finger));
-    if (!finger.thumb) others += y.dot(end_of(finger));
+    if (finger.thumb) thumb = y.dot(finger.end());
+    if (!finger.thumb) others += y.dot(finger.end());
     count += finger.thumb ? 0 : 1;
   }
   const bool has_thumb = std::any_of(fingers.begin(), fingers.end(), [](const auto& finger) { return finger.thumb; });
