@@ -10,9 +10,9 @@
 namespace opponens::report {
 namespace {
 
-constexpr double kLine = 13.0;  // px from one label to the next
-constexpr double kInset = 6.0;  // px from the window's edge to the text
-constexpr double kFont = 10.5;  // px
+constexpr double kLine = 13.0;       // px from one label to the next
+constexpr double kInset = 6.0;       // px from the window's edge to the text
+constexpr double kLabelFont = 10.5;  // px
 
 /// Heights as near to the wanted ones (ascending) as a least distance allows: neighbours that are too near are spread
 /// about their mean, and everything is kept in [low, high].
@@ -55,7 +55,7 @@ void draw_side(Svg& svg, std::vector<Label> labels, double width, double height,
   const std::vector<double> placed = spread(wanted, kLine, height - 4.0);
   for (std::size_t i = 0; i < labels.size(); ++i) {
     const double x = left ? kInset : width - kInset;
-    const double reach = text_width(labels[i].text, kFont) + 3.0;
+    const double reach = text_width(labels[i].text, kLabelFont) + 3.0;
     const double end = left ? x + reach : x - reach;
     svg.line(end, placed[i], labels[i].at.x(), labels[i].at.y(),
              concat({"stroke=\"", labels[i].color, "\" stroke-width=\".7\" stroke-opacity=\".75\""}));

@@ -23,7 +23,7 @@ using Eigen::Vector3d;
 
 constexpr double kCellWidth = 600.0;   // px
 constexpr double kCellHeight = 430.0;  // px, with the caption
-constexpr double kCaption = 24.0;      // px under a view
+constexpr double kViewCaption = 24.0;  // px under a view
 constexpr double kMargin = 120.0;      // px left and right, for names
 constexpr double kTriad = 52.0;        // px below the names, for the root's axes
 constexpr int kTriangles = 12000;      // of all meshes together
@@ -32,7 +32,7 @@ constexpr const char* kJointColor = "#0050b0";
 constexpr const char* kContactColor = "#c4007a";
 constexpr const char* kTipColor = "#b35900";
 
-struct Points {
+struct NamedPoints {
   const std::vector<robot::SurfacePoint>& tips;
   const std::vector<robot::SurfacePoint>& contacts;
 };
@@ -121,7 +121,7 @@ void draw_point(Svg& svg, const View& view, const Posed& pose, const robot::Surf
       concat({"fill=\"", faces ? color : "#fff", "\" stroke=\"", faces ? "#fff" : color, "\" stroke-width=\"1.1\""}));
 }
 
-void draw_points(Svg& svg, const View& view, const Posed& pose, const Points& points, bool names,
+void draw_points(Svg& svg, const View& view, const Posed& pose, const NamedPoints& points, bool names,
                  std::vector<Label>& labels) {
   const auto place = [&](const robot::SurfacePoint& point) {
     return view.project(pose.X_RL[static_cast<std::size_t>(point.link)] * point.p_L);
@@ -155,8 +155,8 @@ void draw_triad(Svg& svg, const View& view) {
   }
 }
 
-void draw_cell(Svg& svg, const Posed& pose, const Points& points, const Cell& cell, double x, double y) {
-  const double height = kCellHeight - kCaption;
+void draw_cell(Svg& svg, const Posed& pose, const NamedPoints& points, const Cell& cell, double x, double y) {
+  const double height = kCellHeight - kViewCaption;
   std::vector<Facet> surface = surface_of(pose, cell.hand_only);
   View view =
       fit_view(cell.toward, cell.up, reach_of(pose, surface, cell.hand_only), kCellWidth - 2.0 * kMargin, height, 26.0);
