@@ -95,11 +95,13 @@ struct CollisionChecker::World {
     return true;
   }
 
-  /// Whether no unknown pair of a lane collides.
+  /// Whether no unknown pair of a lane collides. One that touches for certain spares the kinematics too.
   bool settle(std::span<const wide::Unknown> unknown, unsigned lane, const Eigen::Isometry3d& X_WR,
               const Eigen::Ref<const Eigen::VectorXd>& q, std::int64_t& asked) const {
     const auto concerns = [lane](const wide::Unknown& pair) { return (pair.lanes >> lane & 1U) != 0; };
+    const auto touches = [lane](const wide::Unknown& pair) { return (pair.touching >> lane & 1U) != 0; };
     if (std::none_of(unknown.begin(), unknown.end(), concerns)) return true;
+    if (std::any_of(unknown.begin(), unknown.end(), touches)) return false;
     Placement placement(exact, X_WR, q);
     for (const wide::Unknown& pair : unknown) {
       if (!concerns(pair)) continue;

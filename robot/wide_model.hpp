@@ -84,8 +84,8 @@ struct alignas(4 * kLanes) BoxRow {
 };
 
 /// Views of arrays; the sweep allocates nothing and calls nothing that is compiled elsewhere.
-///
 struct Model {
+  float margin;  ///< m, by which sizes are enlarged; above the error of a point's place
   const Frame* frames;
   int frame_count;
   const Part* parts;  ///< of the robot, then of the scene
@@ -108,6 +108,7 @@ struct Unknown {
   int a;  ///< part of the robot
   int b;  ///< part of the robot or the scene
   unsigned lanes;
+  unsigned touching;  ///< lanes of them in which a point was found that is inside both by more than the margin
 };
 
 struct Query {

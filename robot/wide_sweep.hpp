@@ -59,6 +59,9 @@ struct LaneBox {
 }
 [[gnu::always_inline]] inline V positive(const V& v) { return v > 0.0F ? v : V{}; }
 
+[[gnu::always_inline]] inline V lesser(const V& a, const V& b) { return a < b ? a : b; }
+[[gnu::always_inline]] inline V greater(const V& a, const V& b) { return a > b ? a : b; }
+
 [[gnu::always_inline]] inline V dot(const V3& a, const V3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 [[gnu::always_inline]] inline V3 minus(const V3& a, const V3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 
@@ -337,6 +340,87 @@ constexpr int kStack = 256;  ///< entries of a descent; wider trees end it with 
   return trees_near(model.nodes, a.root, X_a, b.root, X_b, lanes);
 }
 
+/// Takes a point, given in the frame of a box or the cylinder in it, towards the nearest one of its solid made smaller
+/// by `inwards` (less than any half extent). Returns the lanes in which it was within the solid made smaller by half of
+/// that.
+template <bool Round>
+[[gnu::always_inline]] inline unsigned draw_into(const float* half, float inwards, V3& p) {
+  const auto clamp = [](const V& v, float most) { return greater(lesser(v, all(most)), all(-most)); };
+  const float slack = 0.5F * inwards;
+  Bits inside = magnitude(p.z) <= half[2] - slack;
+  if (Round) {
+    const V across = p.x * p.x + p.y * p.y;
+    const float within = half[0] - slack;
+    const V radius = root(across);
+    inside &= across < within * within;
+    const V shrink = lesser(all(1), (half[0] - inwards) / greater(radius, all(1e-12F)));
+    p.x = p.x * shrink;
+    p.y = p.y * shrink;
+  } else {
+    inside &= magnitude(p.x) <= half[0] - slack;
+    inside &= magnitude(p.y) <= half[1] - slack;
+    p.x = clamp(p.x, half[0] - inwards);
+    p.y = clamp(p.y, half[1] - inwards);
+  }
+  p.z = clamp(p.z, half[2] - inwards);
+  return lanes_of(inside);
+}
+
+[[gnu::always_inline]] inline V3 into(const LaneBox& box, const V3& p) {
+  const V3 d = minus(p, box.center);
+  return {dot(d, box.axis[0]), dot(d, box.axis[1]), dot(d, box.axis[2])};
+}
+[[gnu::always_inline]] inline V3 out_of(const LaneBox& box, const V3& p) {
+  return {box.center.x + box.axis[0].x * p.x + box.axis[1].x * p.y + box.axis[2].x * p.z,
+          box.center.y + box.axis[0].y * p.x + box.axis[1].y * p.y + box.axis[2].y * p.z,
+          box.center.z + box.axis[0].z * p.x + box.axis[1].z * p.y + box.axis[2].z * p.z};
+}
+
+constexpr int kDraws = 5;
+/// Share of the margin. Sizes are enlarged by one of it; a point within half of this is deeper than the rest, and its
+/// place is known to far less.
+constexpr float kInwards = 5.0F;
+
+/// Lanes in which alternating projections onto two boxes, or the cylinders in them, found a point inside both.
+template <bool RoundA, bool RoundB>
+[[gnu::noinline]] unsigned boxes_touch(const LaneBox& a, const float* h, const LaneBox& b, const float* g,
+                                       float inwards, unsigned lanes) {
+  V3 in_a = into(a, b.center);
+  draw_into<RoundA>(h, inwards, in_a);
+  V3 p = out_of(a, in_a);
+  unsigned touching = 0;
+  for (int draw = 0; draw < kDraws && touching != lanes; ++draw) {
+    V3 in_b = into(b, p);
+    touching |= lanes & draw_into<RoundB>(g, inwards, in_b);  // p was drawn into a
+    p = out_of(b, in_b);
+    in_a = into(a, p);
+    touching |= lanes & draw_into<RoundA>(h, inwards, in_a);
+    p = out_of(a, in_a);
+  }
+  return touching;
+}
+
+/// Lanes of those given in which two parts touch for certain; none where one is known by its balls only.
+[[gnu::always_inline]] inline unsigned parts_touch(const Scratch& scratch, int i, int j, unsigned lanes) {
+  const Part& a = scratch.model.parts[i];
+  const Part& b = scratch.model.parts[j];
+  if (a.form == Form::other || b.form == Form::other) return 0;
+  const LaneBox& box_a = scratch.boxes[i];
+  const LaneBox& box_b = scratch.boxes[j];
+  const float* h = a.half_extents;
+  const float* g = b.half_extents;
+  const float inwards = kInwards * scratch.model.margin;
+  for (int k = 0; k < 3; ++k) {
+    if (h[k] <= inwards || g[k] <= inwards) return 0;
+  }
+  if (a.form == Form::cylinder) {
+    return b.form == Form::cylinder ? boxes_touch<true, true>(box_a, h, box_b, g, inwards, lanes)
+                                    : boxes_touch<true, false>(box_a, h, box_b, g, inwards, lanes);
+  }
+  return b.form == Form::cylinder ? boxes_touch<false, true>(box_a, h, box_b, g, inwards, lanes)
+                                  : boxes_touch<false, false>(box_a, h, box_b, g, inwards, lanes);
+}
+
 /// Where the parts of the workspace begin, in floats.
 struct Layout {
   int poses = 0;
@@ -387,12 +471,10 @@ struct Output {
     const V3 d = minus(scratch.balls[pair.a], scratch.balls[pair.b]);
     unsigned near = lanes & lanes_of(dot(d, d) <= all(pair.squared_reach));
     if (near != 0) near = parts_near(scratch, pair.a, pair.b, near);
-    if (near != 0) output.found[output.count++] = {pair.a, pair.b, near};
+    if (near == 0) continue;
+    output.found[output.count++] = {pair.a, pair.b, near, parts_touch(scratch, pair.a, pair.b, near)};
   }
 }
-
-[[gnu::always_inline]] inline V lesser(const V& a, const V& b) { return a < b ? a : b; }
-[[gnu::always_inline]] inline V greater(const V& a, const V& b) { return a > b ? a : b; }
 
 /// Least of all lanes, in each.
 [[gnu::always_inline]] inline V least_of(V v) {
