@@ -30,7 +30,7 @@ std::array<float, 12> wide_pose(const Eigen::Isometry3d& X) {
 
 /// Rows [first, first + count) of a batch; idle lanes repeat the last.
 wide::Query wide_query(const ConfigurationBatch& batch, int first, int count, const std::array<float, 12>& root) {
-  wide::Query query{{}, (1U << count) - 1U, root.data()};
+  wide::Query query{{}, (1U << count) - 1U, false, root.data()};
   for (int lane = 0; lane < wide::kLanes; ++lane) {
     query.q[lane] = batch.row(first + std::min(lane, count - 1)).data();
   }
@@ -117,19 +117,22 @@ struct CollisionChecker::World {
   }
 
   /// Pairs that the first stage cannot tell apart in rows [first, first + count) of a batch, count <= kLanes; row
-  /// first + i is lane i. Valid until the thread asks again.
-  std::span<const wide::Unknown> unknown_pairs(const ConfigurationBatch& batch, int first, int count) const {
+  /// first + i is lane i. first_only: rows after one that collides do not matter. Valid until the thread asks again.
+  std::span<const wide::Unknown> unknown_pairs(const ConfigurationBatch& batch, int first, int count,
+                                               bool first_only = false) const {
     static const std::array<float, 12> kUsual = wide_pose(Eigen::Isometry3d::Identity());
     thread_local wide::World::Buffers buffers;
-    const int pairs = fixed.sweep(wide_query(batch, first, count, kUsual), buffers, portable);
+    wide::Query query = wide_query(batch, first, count, kUsual);
+    query.first_only = first_only;
+    const int pairs = fixed.sweep(query, buffers, portable);
     return {buffers.found.data(), static_cast<std::size_t>(pairs)};
   }
 
   /// Asks for such rows at once. Calls verdict(row, free) for each in turn until it returns true.
   template <typename Verdict>
   void sweep_rows(const ConfigurationBatch& batch, int first, int count, const Verdict& verdict,
-                  CollisionCounts& counts) const {
-    const std::span<const wide::Unknown> unknown = unknown_pairs(batch, first, count);
+                  CollisionCounts& counts, bool first_only = false) const {
+    const std::span<const wide::Unknown> unknown = unknown_pairs(batch, first, count, first_only);
     counts.configurations += count;
     for (int row = first; row < first + count; ++row) {
       const Eigen::Map<const Eigen::VectorXd> q(batch.row(row).data(), batch.cols());
@@ -140,13 +143,14 @@ struct CollisionChecker::World {
 
   /// Sweeps a whole batch so.
   template <typename Verdict>
-  void sweep_batch(const ConfigurationBatch& batch, const Verdict& verdict, CollisionCounts& counts) const {
+  void sweep_batch(const ConfigurationBatch& batch, const Verdict& verdict, CollisionCounts& counts,
+                   bool first_only) const {
     require_batch(batch);
     bool ended = false;
     for (int first = 0; first < batch.rows() && !ended; first += wide::kLanes) {
       const int count = std::min(wide::kLanes, static_cast<int>(batch.rows()) - first);
       sweep_rows(
-          batch, first, count, [&](int row, bool free) { return ended = verdict(row, free); }, counts);
+          batch, first, count, [&](int row, bool free) { return ended = verdict(row, free); }, counts, first_only);
     }
   }
 
@@ -193,7 +197,7 @@ std::vector<bool> CollisionChecker::free_rows(const ConfigurationBatch& batch, C
     verdicts.push_back(free);
     return false;
   };
-  world_->sweep_batch(batch, keep, counts != nullptr ? *counts : own);
+  world_->sweep_batch(batch, keep, counts != nullptr ? *counts : own, false);
   return verdicts;
 }
 
@@ -204,7 +208,7 @@ std::optional<int> CollisionChecker::first_colliding(const ConfigurationBatch& b
     if (!free) colliding = row;
     return !free;
   };
-  world_->sweep_batch(batch, keep, counts != nullptr ? *counts : own);
+  world_->sweep_batch(batch, keep, counts != nullptr ? *counts : own, true);
   return colliding;
 }
 

@@ -114,16 +114,17 @@ struct Unknown {
 struct Query {
   const double* q[kLanes];  ///< [d] each; idle lanes repeat another
   unsigned lanes;           ///< asked for
+  bool first_only;          ///< lanes after one that touches do not matter
   const float* root;        ///< X of the robot's root in its usual place, rotation row-major then translation [12]
 };
 
 /// Floats of memory that the sweep needs, to be aligned to 64 bytes.
 int workspace_size(const Model& model);
 
-/// Writes at most one Unknown for each pair into found and returns how many. A lane that no Unknown names is free of
-/// collision: by single-precision kinematics with an error far below the margin, balls around the shapes (ball, ball
-/// tree) and the separating axis theorem on oriented boxes. Portable; sweep_avx2 is the same for a processor with AVX2
-/// and FMA.
+/// Writes at most one Unknown for each pair into found and returns how many. A lane found to touch is not pursued
+/// further. A lane that matters and that no Unknown names is free of collision: by single-precision kinematics with an
+/// error far below the margin, balls around the shapes (ball, ball tree) and the separating axis theorem on oriented
+/// boxes. Portable; sweep_avx2 is the same for a processor with AVX2 and FMA.
 int sweep(const Model& model, const Query& query, float* workspace, Unknown* found);
 int sweep_avx2(const Model& model, const Query& query, float* workspace, Unknown* found);
 

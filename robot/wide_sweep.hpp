@@ -462,6 +462,14 @@ struct Layout {
 struct Output {
   Unknown* found;
   int count;
+  unsigned open;  ///< lanes still to be decided
+  bool first_only;
+
+  void add(int a, int b, unsigned near, unsigned touching) {
+    found[count++] = {a, b, near, touching};
+    open &= ~touching;
+    if (first_only && touching != 0) open &= (touching & (0U - touching)) - 1U;
+  }
 };
 
 /// The parts of two groups whose balls meet in some lanes.
@@ -469,10 +477,11 @@ struct Output {
   for (int k = begin; k < end; ++k) {
     const PartPair& pair = scratch.model.part_pairs[k];
     const V3 d = minus(scratch.balls[pair.a], scratch.balls[pair.b]);
-    unsigned near = lanes & lanes_of(dot(d, d) <= all(pair.squared_reach));
+    unsigned near = lanes & output.open & lanes_of(dot(d, d) <= all(pair.squared_reach));
     if (near != 0) near = parts_near(scratch, pair.a, pair.b, near);
     if (near == 0) continue;
-    output.found[output.count++] = {pair.a, pair.b, near, parts_touch(scratch, pair.a, pair.b, near)};
+    output.add(pair.a, pair.b, near, parts_touch(scratch, pair.a, pair.b, near));
+    if (output.open == 0) return;
   }
 }
 
@@ -523,7 +532,7 @@ struct Output {
     centers[g] = moved(X[model.groups[g].frame], model.groups[g].center);
     enclose(centers[g], model.groups[g].radius, rows[g / kLanes], g % kLanes);
   }
-  Output output{found, 0};
+  Output output{found, 0, query.lanes, query.first_only};
   const int row_count = model.group_rows + model.scene_row_count;
   for (int g = 0; g < model.group_count; ++g) {
     const BoxRow& own = rows[g / kLanes];
@@ -537,7 +546,7 @@ struct Output {
       for (; bits != 0; bits &= bits - 1) {
         const int place = __builtin_ctz(bits);
         const GroupPair& pair = model.pairs[(g * row_count + r) * kLanes + place];
-        unsigned near = query.lanes;
+        unsigned near = output.open;
         if (scene) {
           const SceneBox& box = model.scene_boxes[(r - model.group_rows) * kLanes + place];
           near &= lanes_of(near_scene_box(centers[g], all(pair.squared_reach), box));
@@ -545,7 +554,9 @@ struct Output {
           const V3 d = minus(centers[g], centers[r * kLanes + place]);
           near &= lanes_of(dot(d, d) <= all(pair.squared_reach));
         }
-        if (near != 0) check_parts(scratch, pair.begin, pair.end, near, output);
+        if (near == 0) continue;
+        check_parts(scratch, pair.begin, pair.end, near, output);
+        if (output.open == 0) return output.count;
       }
     }
   }
