@@ -106,10 +106,8 @@ struct CollisionChecker::World {
     for (const wide::Unknown& pair : unknown) {
       if (!concerns(pair)) continue;
       // The truth is dear for meshes; of primitives the first stage knows nearly as much as their hulls would tell.
-      if (exact.involves_mesh(pair.a, pair.b)) {
-        if (placement.hulls_apart(pair.a, pair.b)) continue;
-        if (placement.share_a_point(pair.a, pair.b)) return false;
-      }
+      if (exact.involves_mesh(pair.a, pair.b) && placement.hulls_apart(pair.a, pair.b)) continue;
+      if (placement.share_a_point(pair.a, pair.b)) return false;
       ++asked;
       if (placement.collide(pair.a, pair.b)) return false;
     }

@@ -47,6 +47,16 @@ bool deep_inside(const Shape& shape, const Eigen::Vector3d& p) {
          std::abs(p.z()) < 0.5 * cylinder->length - kWitnessDepth;
 }
 
+/// For the parallel edges of two boxes, whose cross product is nothing but rounding.
+constexpr double kNothing = 1e-14;
+
+/// Whether two boxes share a point: no axis keeps them apart though both are made smaller.
+bool boxes_overlap(OrientedBox a, OrientedBox b) {
+  a.half_extents.array() -= kWitnessDepth;
+  b.half_extents.array() -= kWitnessDepth;
+  return a.half_extents.minCoeff() > 0.0 && b.half_extents.minCoeff() > 0.0 && !boxes_apart(a, b, kNothing);
+}
+
 Placement::Placed place(const CollisionShape& shape, const Eigen::Isometry3d& X_WG) {
   return {X_WG, {X_WG * shape.center(), X_WG.linear(), shape.half_extents()}};
 }
@@ -166,12 +176,15 @@ bool Placement::holds_a_vertex(int primitive, int mesh) {
 }
 
 bool Placement::share_a_point(int a, int b) {
-  const auto is_mesh = [&](int part) {
-    return std::holds_alternative<std::shared_ptr<const TriangleMesh>>(
-        world_.parts[static_cast<std::size_t>(part)].shape.shape());
+  const auto shape = [&](int part) -> const Shape& {
+    return world_.parts[static_cast<std::size_t>(part)].shape.shape();
   };
-  if (is_mesh(a) == is_mesh(b)) return false;
-  return is_mesh(a) ? holds_a_vertex(b, a) : holds_a_vertex(a, b);
+  const auto is_mesh = [&](int part) {
+    return std::holds_alternative<std::shared_ptr<const TriangleMesh>>(shape(part));
+  };
+  if (is_mesh(a) != is_mesh(b)) return is_mesh(a) ? holds_a_vertex(b, a) : holds_a_vertex(a, b);
+  const bool boxes = std::holds_alternative<Box>(shape(a)) && std::holds_alternative<Box>(shape(b));
+  return boxes && boxes_overlap(at(a).box, at(b).box);
 }
 
 double Placement::separation(int a, int b) {

@@ -61,8 +61,8 @@ class Placement {
   bool collide(int a, int b);
   /// Whether the convex hulls of two parts are apart for certain.
   bool hulls_apart(int a, int b);
-  /// Whether a vertex of a mesh was found inside a primitive: two such parts collide for certain, which FCL would find
-  /// out by descending into the mesh. Not found does not mean that they are apart.
+  /// Whether a vertex of a mesh was found inside a primitive, or two boxes overlap by more than rounding: two such
+  /// parts collide for certain, which FCL takes longer to find out. Not found does not mean that they are apart.
   bool share_a_point(int a, int b);
   double separation(int a, int b);
   /// A lower bound of the separation from bounding volumes, m.
