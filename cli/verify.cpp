@@ -75,7 +75,7 @@ Verdict grasp_verdict(const storage::Store& store, const storage::Record& record
   return verdict;
 }
 
-/// The arm solution that a path uses: the one nearest to its pre-grasp (check_path asks for equality).
+/// The arm solution that a path uses: the one nearest to its pre-grasp (PathChecker asks for equality).
 const ArmSolution& solution_used(const Grasp& grasp, const Eigen::VectorXd& q_arm) {
   return *std::min_element(grasp.arm_solutions.begin(), grasp.arm_solutions.end(),
                            [&](const ArmSolution& a, const ArmSolution& b) {

@@ -18,6 +18,8 @@ namespace opponens::robot {
 
 namespace {
 
+constexpr double kTouching = 1e-5;  ///< m; nearer pairs may collide in one pose and not in another, by rounding
+
 /// A pose as the sweep takes it.
 std::array<float, 12> wide_pose(const Eigen::Isometry3d& X) {
   std::array<float, 12> pose;
@@ -28,17 +30,19 @@ std::array<float, 12> wide_pose(const Eigen::Isometry3d& X) {
   return pose;
 }
 
-/// Rows [first, first + count) of a batch; idle lanes repeat the last.
-wide::Query wide_query(const ConfigurationBatch& batch, int first, int count, const std::array<float, 12>& root) {
-  wide::Query query{{}, (1U << count) - 1U, false, root.data()};
-  for (int lane = 0; lane < wide::kLanes; ++lane) {
-    query.q[lane] = batch.row(first + std::min(lane, count - 1)).data();
+/// Rows [first, first + count) of a batch. Idle lanes repeat the last, and lanes that the sweep does not hold for rest
+/// at zero: a number that is not finite would spoil the boxes around all lanes.
+wide::Query wide_query(const wide::World& world, const ConfigurationBatch& batch, int first, int count,
+                       const std::array<float, 12>& root, const Eigen::VectorXd& zero) {
+  wide::Query query{{}, 0, root.data()};
+  for (int lane = 0; lane < count; ++lane) {
+    const double* const q = batch.row(first + lane).data();
+    const bool held = world.holds(q, static_cast<int>(batch.cols()));
+    query.q[lane] = held ? q : zero.data();
+    if (held) query.lanes |= 1U << lane;
   }
+  for (int lane = count; lane < wide::kLanes; ++lane) query.q[lane] = query.q[count - 1];
   return query;
-}
-
-bool too_large(const Eigen::Ref<const Eigen::VectorXd>& q) {
-  return q.size() > 0 && q.cwiseAbs().maxCoeff() > wide::World::kLargestPosition;
 }
 
 static_assert(CollisionChecker::kTogether == wide::kLanes);
@@ -49,18 +53,23 @@ struct CollisionChecker::World {
   CollisionWorld exact;
   wide::World fixed;  ///< the robot's root where the scene puts it
   bool portable;
-  bool constant_collision = false;       ///< of what no joint moves, the scene included
-  bool constant_self_collision = false;  ///< of the robot with itself
+  Eigen::VectorXd zero;                            ///< [d]
+  std::vector<std::pair<int, int>> constant;       ///< what no joint moves and touches, or nearly so
+  std::vector<std::pair<int, int>> constant_self;  ///< of these, the robot's own
 
   World(const RobotModel& robot, const Scene& scene, const std::vector<BodyPair>& touching,
         const CollisionSettings& settings)
-      : exact(robot, scene, touching), fixed(exact, true), portable(settings.portable) {
-    const Eigen::VectorXd zero = Eigen::VectorXd::Zero(robot.dof());
+      : exact(robot, scene, touching),
+        fixed(exact, true),
+        portable(settings.portable),
+        zero(Eigen::VectorXd::Zero(robot.dof())) {
     Placement placement(exact, exact.X_WR, zero);
+    // The truth is asked each time about those that are not apart for certain: of faces that just touch, rounding
+    // decides it, and rounding differs from pose to pose.
     for (const auto& [a, b] : fixed.constant_pairs()) {
-      if (!placement.collide(a, b)) continue;
-      constant_collision = true;
-      constant_self_collision = constant_self_collision || !exact.of_scene(b);
+      if (placement.hulls_apart(a, b) || placement.separation(a, b) > kTouching) continue;
+      constant.emplace_back(a, b);
+      if (!exact.of_scene(b)) constant_self.emplace_back(a, b);
     }
   }
 
@@ -81,8 +90,6 @@ struct CollisionChecker::World {
   void require_batch(const ConfigurationBatch& batch) const {
     require(batch.cols() == exact.robot.dof() && batch.allFinite(),
             "CollisionChecker: a batch needs one finite number for each joint");
-    require(batch.size() == 0 || batch.cwiseAbs().maxCoeff() <= wide::World::kLargestPosition,
-            "CollisionChecker: a joint position of a batch is beyond 10,000");
   }
 
   bool exact_free(const Eigen::Isometry3d& X_WR, const Eigen::Ref<const Eigen::VectorXd>& q) const {
@@ -93,6 +100,15 @@ struct CollisionChecker::World {
       }
     }
     return true;
+  }
+
+  /// Whether none of the pairs collides.
+  bool apart(const std::vector<std::pair<int, int>>& pairs, const Eigen::Isometry3d& X_WR,
+             const Eigen::Ref<const Eigen::VectorXd>& q) const {
+    if (pairs.empty()) return true;
+    Placement placement(exact, X_WR, q);
+    return std::none_of(pairs.begin(), pairs.end(),
+                        [&](const auto& pair) { return placement.collide(pair.first, pair.second); });
   }
 
   /// Whether no unknown pair of a lane collides. One that touches for certain spares the kinematics too.
@@ -114,28 +130,34 @@ struct CollisionChecker::World {
     return true;
   }
 
-  /// Pairs that the first stage cannot tell apart in rows [first, first + count) of a batch, count <= kLanes; row
-  /// first + i is lane i. first_only: rows after one that collides do not matter. Valid until the thread asks again.
-  std::span<const wide::Unknown> unknown_pairs(const ConfigurationBatch& batch, int first, int count,
-                                               bool first_only = false) const {
+  /// What the first stage says of rows [first, first + count) of a batch, count <= kLanes; row first + i is lane i.
+  struct FirstStage {
+    std::span<const wide::Unknown> unknown;  ///< pairs that it cannot tell apart
+    unsigned lanes;                          ///< in which it says anything
+  };
+  /// Valid until the thread asks again. first_only: rows after one that collides do not matter.
+  FirstStage first_stage(const ConfigurationBatch& batch, int first, int count, bool first_only = false) const {
     static const std::array<float, 12> kUsual = wide_pose(Eigen::Isometry3d::Identity());
     thread_local wide::World::Buffers buffers;
-    wide::Query query = wide_query(batch, first, count, kUsual);
+    wide::Query query = wide_query(fixed, batch, first, count, kUsual, zero);
     query.first_only = first_only;
     const int pairs = fixed.sweep(query, buffers, portable);
-    return {buffers.found.data(), static_cast<std::size_t>(pairs)};
+    return {{buffers.found.data(), static_cast<std::size_t>(pairs)}, query.lanes};
   }
 
   /// Asks for such rows at once. Calls verdict(row, free) for each in turn until it returns true.
   template <typename Verdict>
   void sweep_rows(const ConfigurationBatch& batch, int first, int count, const Verdict& verdict,
                   CollisionCounts& counts, bool first_only = false) const {
-    const std::span<const wide::Unknown> unknown = unknown_pairs(batch, first, count, first_only);
+    const FirstStage stage = first_stage(batch, first, count, first_only);
     counts.configurations += count;
     for (int row = first; row < first + count; ++row) {
       const Eigen::Map<const Eigen::VectorXd> q(batch.row(row).data(), batch.cols());
       const auto lane = static_cast<unsigned>(row - first);
-      if (verdict(row, !constant_collision && settle(unknown, lane, exact.X_WR, q, counts.pairs))) return;
+      const bool free = (stage.lanes >> lane & 1U) != 0
+                            ? apart(constant, exact.X_WR, q) && settle(stage.unknown, lane, exact.X_WR, q, counts.pairs)
+                            : exact_free(exact.X_WR, q);
+      if (verdict(row, free)) return;
     }
   }
 
@@ -166,7 +188,6 @@ CollisionChecker& CollisionChecker::operator=(CollisionChecker&&) noexcept = def
 
 bool CollisionChecker::free(const Eigen::Ref<const Eigen::VectorXd>& q) const {
   world_->require_configuration(q);
-  if (too_large(q)) return exact_free(q);
   bool free = false;
   CollisionCounts counts;
   world_->sweep_rows(
@@ -178,14 +199,15 @@ bool CollisionChecker::free(const Eigen::Isometry3d& X_WR, const Eigen::Ref<cons
   const World& w = *world_;
   w.require_configuration(q);
   const Eigen::Isometry3d X_SR = w.exact.X_WR.inverse() * X_WR;
-  if (too_large(q) || !w.flying().reaches(X_SR)) return w.exact_free(X_WR, q);
   const std::array<float, 12> root = wide_pose(X_SR);
   const ConfigurationBatch row = q.transpose();
+  const wide::Query query = wide_query(w.flying(), row, 0, 1, root, w.zero);
+  if (query.lanes == 0 || !w.flying().reaches(X_SR)) return w.exact_free(X_WR, q);
   thread_local wide::World::Buffers buffers;
-  const int pairs = w.flying().sweep(wide_query(row, 0, 1, root), buffers, w.portable);
+  const int pairs = w.flying().sweep(query, buffers, w.portable);
   const std::span<const wide::Unknown> unknown(buffers.found.data(), static_cast<std::size_t>(pairs));
   std::int64_t asked = 0;
-  return !w.constant_self_collision && w.settle(unknown, 0, X_WR, q, asked);
+  return w.apart(w.constant_self, X_WR, q) && w.settle(unknown, 0, X_WR, q, asked);
 }
 
 std::vector<bool> CollisionChecker::free_rows(const ConfigurationBatch& batch, CollisionCounts* counts) const {
@@ -213,13 +235,14 @@ std::optional<int> CollisionChecker::first_colliding(const ConfigurationBatch& b
 std::vector<bool> CollisionChecker::cleared_rows(const ConfigurationBatch& batch) const {
   const World& w = *world_;
   w.require_batch(batch);
-  std::vector<bool> cleared(static_cast<std::size_t>(batch.rows()), !w.constant_collision);
+  std::vector<bool> cleared(static_cast<std::size_t>(batch.rows()), w.constant.empty());
   for (int first = 0; first < batch.rows(); first += wide::kLanes) {
     const int count = std::min(wide::kLanes, static_cast<int>(batch.rows()) - first);
-    for (const wide::Unknown& pair : w.unknown_pairs(batch, first, count)) {
-      for (int lane = 0; lane < count; ++lane) {
-        if ((pair.lanes >> lane & 1U) != 0) cleared[static_cast<std::size_t>(first + lane)] = false;
-      }
+    const World::FirstStage stage = w.first_stage(batch, first, count);
+    unsigned free = stage.lanes;
+    for (const wide::Unknown& pair : stage.unknown) free &= ~pair.lanes;
+    for (int lane = 0; lane < count; ++lane) {
+      if ((free >> lane & 1U) == 0) cleared[static_cast<std::size_t>(first + lane)] = false;
     }
   }
   return cleared;

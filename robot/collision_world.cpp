@@ -163,11 +163,12 @@ bool Placement::hulls_apart(int a, int b) {
   return convex_apart(A, at(a).X_WG, B, at(b).X_WG, kCullMargin);
 }
 
-/// Vertices of the hull are points of the mesh, known to a rounding that kWitnessDepth is far above.
+/// Vertices of the hull are points of the mesh, known to a rounding that has to be far below kWitnessDepth.
 bool Placement::holds_a_vertex(int primitive, int mesh) {
   const CollisionShape& hull_of = world_.parts[static_cast<std::size_t>(mesh)].shape;
   const Shape& shape = world_.parts[static_cast<std::size_t>(primitive)].shape.shape();
   const HullVertices& hull = hull_of.hull();
+  if (hull.rounding > 0.5 * kWitnessDepth) return false;  // of a mesh that reaches further than some metres
   const Eigen::Isometry3d X_PM = at(primitive).X_WG.inverse(Eigen::Isometry) * at(mesh).X_WG;
   for (int i = 0; i < hull.count; ++i) {
     if (deep_inside(shape, X_PM * hull.vertex(i))) return true;

@@ -46,14 +46,30 @@ std::optional<std::vector<Eigen::Index>> hull_indices(const Eigen::Matrix3Xd& po
   return indices;
 }
 
+/// Vertices that triangles have, ascending: another is no point of the solid.
+std::vector<Eigen::Index> used_vertices(const TriangleMesh& mesh) {
+  std::vector<bool> is_used(static_cast<std::size_t>(mesh.vertices.cols()), false);
+  for (Eigen::Index f = 0; f < mesh.triangles.cols(); ++f) {
+    for (int k = 0; k < 3; ++k) is_used[static_cast<std::size_t>(mesh.triangles(k, f))] = true;
+  }
+  std::vector<Eigen::Index> used;
+  for (Eigen::Index i = 0; i < mesh.vertices.cols(); ++i) {
+    if (is_used[static_cast<std::size_t>(i)]) used.push_back(i);
+  }
+  return used;
+}
+
 }  // namespace
 
 HullVertices hull_vertices(const TriangleMesh& mesh) {
+  const std::vector<Eigen::Index> used = used_vertices(mesh);
+  Eigen::Matrix3Xd points(3, static_cast<Eigen::Index>(used.size()));
+  for (std::size_t i = 0; i < used.size(); ++i) points.col(static_cast<Eigen::Index>(i)) = mesh.vertices.col(used[i]);
   std::vector<Eigen::Index> indices;
-  if (auto found = hull_indices(mesh.vertices)) {
-    indices = std::move(*found);
+  if (const auto found = hull_indices(points)) {
+    for (const Eigen::Index i : *found) indices.push_back(used[static_cast<std::size_t>(i)]);
   } else {
-    for (Eigen::Index i = 0; i < mesh.vertices.cols(); ++i) indices.push_back(i);
+    indices = used;
   }
   HullVertices hull;
   hull.count = (static_cast<int>(indices.size()) + kPadding - 1) / kPadding * kPadding;

@@ -23,7 +23,7 @@ struct HullVertices {
   }
 };
 
-/// By qhull (exact but for its own rounding); all vertices of a mesh that spans no volume.
+/// By qhull (exact but for its own rounding); all vertices (that triangles have) of a mesh that spans no volume.
 HullVertices hull_vertices(const TriangleMesh& mesh);
 
 }  // namespace opponens::robot

@@ -102,7 +102,7 @@ void RobotModel::index_joints() {
   hand_ = {"hand", description_.hand_joints, arm_.count, static_cast<int>(description_.hand_joints.size())};
   const Eigen::Index d = dof();
   if (description_.weights.size() == 0) description_.weights = Eigen::VectorXd::Ones(d);
-  require(description_.weights.size() == d && description_.weights.minCoeff() > 0.0,
+  require(description_.weights.size() == d && (description_.weights.array() > 0.0).all(),
           "weights must be one positive number for each of the " + std::to_string(d) + " joints");
   lower_.resize(d);
   upper_.resize(d);

@@ -251,7 +251,7 @@ std::vector<Branch> grow(Branch root, const Inside& asked, const SphereTreeSetti
   RememberedInside inside(asked);
   std::vector<Branch> branches{std::move(root)};
   std::vector<int> leaves{0};
-  while (static_cast<int>(leaves.size()) < settings.leaves) {
+  while (!leaves.empty() && static_cast<int>(leaves.size()) < settings.leaves) {
     const auto largest = std::max_element(leaves.begin(), leaves.end(), [&](int a, int b) {
       return branches[static_cast<std::size_t>(a)].ball.radius < branches[static_cast<std::size_t>(b)].ball.radius;
     });

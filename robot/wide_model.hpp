@@ -114,8 +114,8 @@ struct Unknown {
 struct Query {
   const double* q[kLanes];  ///< [d] each; idle lanes repeat another
   unsigned lanes;           ///< asked for
-  bool first_only;          ///< lanes after one that touches do not matter
   const float* root;        ///< X of the robot's root in its usual place, rotation row-major then translation [12]
+  bool first_only = false;  ///< lanes after one that touches do not matter
 };
 
 /// Floats of memory that the sweep needs, to be aligned to 64 bytes.

@@ -4,12 +4,6 @@
 // no code made for one processor can be linked into a path for another.
 #pragma once
 
-#if defined(__AVX__)
-#include <immintrin.h>
-#elif defined(__SSE__)
-#include <xmmintrin.h>
-#endif
-
 #include "robot/wide_model.hpp"
 
 namespace opponens::robot::wide {
@@ -29,8 +23,9 @@ struct Pose {
   V3 p;
 };
 
-/// Added to the size of a cosine: more than its rounding.
-constexpr float kParallel = 1e-6F;
+/// Added to the size of a cosine: more than its rounding, and than the axes of a chain of 40 joints are off a right
+/// angle (2e-7 for each).
+constexpr float kParallel = 1e-5F;
 
 /// A box with lanes: axes by columns.
 struct LaneBox {
@@ -42,10 +37,11 @@ struct LaneBox {
 
 [[gnu::always_inline]] inline unsigned lanes_of(const Bits& condition) {
 #if defined(__AVX__)
-  return static_cast<unsigned>(_mm256_movemask_ps(__builtin_bit_cast(__m256, condition)));
+  return static_cast<unsigned>(__builtin_ia32_movmskps256(__builtin_bit_cast(V, condition)));
 #elif defined(__SSE__)
-  const __m128* half = reinterpret_cast<const __m128*>(&condition);
-  return static_cast<unsigned>(_mm_movemask_ps(half[0]) | (_mm_movemask_ps(half[1]) << 4));
+  typedef float Half __attribute__((vector_size(2 * kLanes), may_alias));
+  const Half* const half = reinterpret_cast<const Half*>(&condition);
+  return static_cast<unsigned>(__builtin_ia32_movmskps(half[0]) | (__builtin_ia32_movmskps(half[1]) << 4));
 #else
   unsigned lanes = 0;
   for (int i = 0; i < kLanes; ++i) lanes |= (condition[i] < 0 ? 1U : 0U) << i;

@@ -15,6 +15,9 @@ using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
 constexpr double kMargin = 2e-5;            ///< of the largest coordinate
+constexpr int kChain = 20;                  ///< moving joints in a row that this is enough for
+constexpr double kFarthest = 1e6;           ///< m; beyond it squares of lengths come near what a float can hold
+constexpr double kSlideSlack = 0.01;        ///< m, of sliding joints beyond their limits
 constexpr double kGroupGrowth = 1.4;        ///< of the larger ball's radius, when two parts share one
 constexpr float kRadiusRounding = 1.0e-6F;  ///< share by which a radius grows when it becomes a float
 constexpr std::size_t kAlignment = 64;      ///< bytes
@@ -30,9 +33,20 @@ void store(const Vector3d& v, float* to) {
 
 float enlarged(double length, double margin) { return static_cast<float>(length + margin) * (1.0F + kRadiusRounding); }
 
-/// Turns the z axis into the given one.
+/// A rotation that turns the z axis into the given one: orthonormal to rounding for every axis, as the quaternion from
+/// two vectors is not when they are nearly opposite (by 5e-5 for an axis 1e-6 off -z).
 Eigen::Matrix3d z_onto(const Vector3d& axis) {
-  return Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), axis).toRotationMatrix();
+  Eigen::Matrix3d R;
+  R.col(2) = axis.normalized();
+  R.col(0) = R.col(2).unitOrthogonal();
+  R.col(1) = R.col(2).cross(R.col(0));
+  return R;
+}
+
+Isometry3d turned(const Eigen::Matrix3d& R) {
+  Isometry3d X = Isometry3d::Identity();
+  X.linear() = R;
+  return X;
 }
 
 Form form_of(const CollisionShape& shape) {
@@ -99,13 +113,14 @@ World::World(const CollisionWorld& world, bool fixed_root) : robot_parts_(world.
     } else {
       const auto link = static_cast<std::size_t>(part.body);
       const Reach& reach = reach_[static_cast<std::size_t>(frame_of_link_[link])];
-      const double offset = std::isfinite(reach.radius) ? reach.center.norm() + reach.radius : 0.0;
-      largest = std::max(largest, offset + largest_coordinate(part, X_FL_[link]));
+      largest = std::max(largest, reach.center.norm() + reach.radius + largest_coordinate(part, X_FL_[link]));
     }
   }
   // A robot that flies may be as far away again (contains).
   largest_ = fixed_root ? largest : 2.0 * largest;
-  margin_ = kMargin * largest_;
+  const int chain = *std::max_element(depth_.begin(), depth_.end());
+  margin_ = kMargin * largest_ * std::max(1.0, static_cast<double>(chain) / kChain);
+  usable_ = margin_ <= kMargin * kFarthest;
   add_parts(world);
   add_groups();
   add_checks(world, fixed_root);
@@ -115,7 +130,8 @@ World::World(const CollisionWorld& world, bool fixed_root) : robot_parts_(world.
 void World::add_frames(const RobotModel& robot) {
   const Frame still{kWorld, Motion::none, -1, 1.0, 0.0, {1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
   frames_ = {still, still};
-  reach_ = {{kRoot, Vector3d::Zero(), 0.0}, {kRoot, Vector3d::Zero(), 0.0}};
+  reach_ = {{Vector3d::Zero(), 0.0}, {Vector3d::Zero(), 0.0}};
+  depth_ = {0, 0};
   frame_of_link_ = {kRoot};
   X_FL_ = {Isometry3d::Identity()};
   const std::vector<Joint>& joints = robot.description().joints;
@@ -133,7 +149,7 @@ void World::add_frames(const RobotModel& robot) {
       continue;
     }
     const Eigen::Matrix3d Q = z_onto(joint.axis);
-    const Isometry3d X_PF = X_FL_[parent_link] * joint.X_PJ * Isometry3d(Eigen::Quaterniond(Q));
+    const Isometry3d X_PF = X_FL_[parent_link] * joint.X_PJ * turned(Q);
     Frame frame = still;
     frame.parent = parent;
     frame.motion = joint.type == JointType::revolute ? Motion::turn : Motion::slide;
@@ -142,13 +158,20 @@ void World::add_frames(const RobotModel& robot) {
     frame.offset = drive.offset;
     store_rotation(X_PF.linear(), frame.rotation);
     store(X_PF.translation(), frame.translation);
-    const Reach& before = reach_[static_cast<std::size_t>(parent)];
-    const double infinity = std::numeric_limits<double>::infinity();
-    const double radius = frame.motion == Motion::slide ? infinity : before.radius + X_PF.translation().norm();
-    reach_.push_back(parent == kRoot && frame.motion == Motion::turn ? Reach{kRoot, X_PF.translation(), 0.0}
-                                                                     : Reach{kRoot, before.center, radius});
+    const Reach before = reach_[static_cast<std::size_t>(parent)];
+    Reach reach = parent == kRoot ? Reach{X_PF.translation(), 0.0}
+                                  : Reach{before.center, before.radius + X_PF.translation().norm()};
+    if (frame.motion == Motion::slide) {
+      const Slide slide{frame.joint, robot.lower()[frame.joint] - kSlideSlack,
+                        robot.upper()[frame.joint] + kSlideSlack};
+      slides_.push_back(slide);
+      reach.radius += std::max(std::abs(frame.multiplier * slide.lower + frame.offset),
+                               std::abs(frame.multiplier * slide.upper + frame.offset));
+    }
+    reach_.push_back(reach);
+    depth_.push_back(depth_[static_cast<std::size_t>(parent)] + 1);
     frame_of_link_.push_back(static_cast<int>(frames_.size()));
-    X_FL_.emplace_back(Eigen::Quaterniond(Q).inverse());
+    X_FL_.push_back(turned(Q.transpose()));
     frames_.push_back(frame);
   }
 }
@@ -328,6 +351,13 @@ Model World::model() const {
   model.pairs = pairs_.data();
   model.part_pairs = part_pairs_.data();
   return model;
+}
+
+bool World::holds(const double* q, int dof) const {
+  const double largest = Eigen::Map<const Eigen::VectorXd>(q, dof).lpNorm<Eigen::Infinity>();
+  return usable_ && largest <= kLargestPosition && std::all_of(slides_.begin(), slides_.end(), [&](const Slide& slide) {
+           return q[slide.joint] >= slide.lower && q[slide.joint] <= slide.upper;
+         });
 }
 
 int World::sweep(const Query& query, Buffers& buffers, bool portable) const {

@@ -30,10 +30,10 @@ class World {
   /// Pairs of parts, in the fixed world, that no joint moves against each other.
   const std::vector<std::pair<int, int>>& constant_pairs() const { return constant_pairs_; }
 
-  /// Larger joint positions than this, rad or m, are not for the sweep: single precision would not do.
-  static constexpr double kLargestPosition = 1e4;
-
-  /// Whether the sweep's precision holds with the robot's root there.
+  /// Whether the sweep's precision holds at q, [dof]: not for turns beyond 10,000 rad, nor for joints that slide more
+  /// than 10 mm beyond their limits, nor in worlds of more than 1000 km.
+  bool holds(const double* q, int dof) const;
+  /// The same for the robot's root there.
   bool reaches(const Eigen::Isometry3d& X_SR) const { return X_SR.translation().norm() <= 0.5 * largest_; }
 
   /// Memory for sweeps, to be used again and again.
@@ -46,7 +46,7 @@ class World {
 
   /// m, by which every ball and box is enlarged: at least twice the errors of the sweep's arithmetic. 2e-5 times the
   /// largest coordinate, of which rounding of angles (2e-7 rad for each joint of a chain, times its reach), of sines
-  /// and of products takes a third at most.
+  /// and of products takes a third at most; more for chains of more than 20 joints.
   double margin() const { return margin_; }
 
   Model model() const;
@@ -63,15 +63,24 @@ class World {
   void add_scene_box(const Part& part);
   bool out_of_reach(int group, const Part& other) const;
 
-  /// Where a frame's origin can be: within radius of a point of a frame that does not move.
+  static constexpr double kLargestPosition = 1e4;  ///< rad or m
+
+  /// Where a frame's origin can be: within radius of a point of the root frame.
   struct Reach {
-    int frame;
     Eigen::Vector3d center;
     double radius;
   };
+  /// Where the position of a sliding joint may be.
+  struct Slide {
+    int joint;  ///< index in the configuration
+    double lower;
+    double upper;
+  };
 
   std::vector<Frame> frames_;
-  std::vector<Reach> reach_;             ///< [frames]
+  std::vector<Reach> reach_;  ///< [frames]
+  std::vector<int> depth_;    ///< [frames] moving joints from the root
+  std::vector<Slide> slides_;
   std::vector<int> frame_of_link_;       ///< [links]
   std::vector<Eigen::Isometry3d> X_FL_;  ///< [links]
   std::vector<Part> parts_;
@@ -87,6 +96,7 @@ class World {
   int robot_parts_ = 0;
   double largest_ = 0.0;  ///< m
   double margin_ = 0.0;
+  bool usable_ = true;  ///< floats can hold it
 };
 
 }  // namespace opponens::robot::wide

@@ -194,7 +194,8 @@ TEST(RobotArms, HandsThatMeetCollide) {
   const CollisionChecker checker(both, Scene{});
   const auto reach = [](const RobotModel& arm, Eigen::Isometry3d X_RH, double x) {
     X_RH.translation().x() = x;
-    const std::vector<Eigen::VectorXd> solutions = ArmKinematics(arm).solve(X_RH);
+    const std::vector<Eigen::VectorXd> solutions =
+        make_inverse_kinematics(arm)(X_RH, {}).value_or(std::vector<Eigen::VectorXd>());
     const auto near = std::min_element(solutions.begin(), solutions.end(), [&](const auto& a, const auto& b) {
       return (a - arm.rest().head(6)).norm() < (b - arm.rest().head(6)).norm();
     });
@@ -232,7 +233,8 @@ TEST(RobotArms, ArmsCollideWithTheStand) {
   Eigen::Isometry3d X = pose_of(right, right.rest(), "right/palm_link");
   X.translation().z() -= 0.15;
   Eigen::VectorXd q = right.rest();
-  const std::vector<Eigen::VectorXd> solutions = ArmKinematics(right).solve(X);
+  const std::vector<Eigen::VectorXd> solutions =
+      make_inverse_kinematics(right)(X, {}).value_or(std::vector<Eigen::VectorXd>());
   ASSERT_FALSE(solutions.empty());
   q.head(6) = solutions[0];
   const std::vector<BodyPair> pairs = checker.colliding_pairs(q);
