@@ -481,21 +481,43 @@ struct Output {
   }
 }
 
-/// Least of all lanes, in each.
-[[gnu::always_inline]] inline V least_of(V v) {
-  v = lesser(v, __builtin_shuffle(v, Bits{4, 5, 6, 7, 0, 1, 2, 3}));
-  v = lesser(v, __builtin_shuffle(v, Bits{2, 3, 0, 1, 6, 7, 4, 5}));
-  return lesser(v, __builtin_shuffle(v, Bits{1, 0, 3, 2, 5, 4, 7, 6}));
+/// The least lane of each of kLanes numbers, side by side: halved three times.
+[[gnu::always_inline]] inline V least_of_each(const V (&v)[kLanes]) {
+  V pairs[4];
+  for (int k = 0; k < 4; ++k) {
+    pairs[k] = lesser(__builtin_shuffle(v[2 * k], v[2 * k + 1], Bits{0, 8, 2, 10, 4, 12, 6, 14}),
+                      __builtin_shuffle(v[2 * k], v[2 * k + 1], Bits{1, 9, 3, 11, 5, 13, 7, 15}));
+  }
+  V fours[2];
+  for (int k = 0; k < 2; ++k) {
+    fours[k] = lesser(__builtin_shuffle(pairs[2 * k], pairs[2 * k + 1], Bits{0, 1, 8, 9, 4, 5, 12, 13}),
+                      __builtin_shuffle(pairs[2 * k], pairs[2 * k + 1], Bits{2, 3, 10, 11, 6, 7, 14, 15}));
+  }
+  return lesser(__builtin_shuffle(fours[0], fours[1], Bits{0, 1, 2, 3, 8, 9, 10, 11}),
+                __builtin_shuffle(fours[0], fours[1], Bits{4, 5, 6, 7, 12, 13, 14, 15}));
 }
 
-/// Writes the box around a group's balls of all lanes into its place in a row.
-[[gnu::always_inline]] inline void enclose(const V3& center, float radius, BoxRow& row, int place) {
-  const V* const coordinate[3] = {&center.x, &center.y, &center.z};
+[[gnu::always_inline]] inline const V& coordinate(const V3& p, int axis) {
+  return axis == 0 ? p.x : axis == 1 ? p.y : p.z;
+}
+
+/// The boxes around a row of groups' balls of all lanes. Places beyond the last group repeat it.
+[[gnu::always_inline]] inline void enclose(const Model& model, const V3* centers, int first, BoxRow& row) {
+  typedef float Stored __attribute__((vector_size(4 * kLanes), may_alias));
+  int group[kLanes];
+  V radius;
+  for (int place = 0; place < kLanes; ++place) {
+    group[place] = first + place < model.group_count ? first + place : model.group_count - 1;
+    radius[place] = model.groups[group[place]].radius;
+  }
   for (int axis = 0; axis < 3; ++axis) {
-    const float low = least_of(*coordinate[axis])[0];
-    const float high = -least_of(-*coordinate[axis])[0];
-    row.center[axis][place] = 0.5F * (low + high);
-    row.half[axis][place] = 0.5F * (high - low) + radius;
+    V v[kLanes];
+    for (int place = 0; place < kLanes; ++place) v[place] = coordinate(centers[group[place]], axis);
+    const V low = least_of_each(v);
+    for (V& number : v) number = -number;
+    const V high = -least_of_each(v);
+    *reinterpret_cast<Stored*>(row.center[axis]) = 0.5F * (low + high);
+    *reinterpret_cast<Stored*>(row.half[axis]) = 0.5F * (high - low) + radius;
   }
 }
 
@@ -524,10 +546,8 @@ struct Output {
     const float* c = model.parts[i].ball_center;
     balls[i] = {all(c[0]), all(c[1]), all(c[2])};
   }
-  for (int g = 0; g < model.group_count; ++g) {
-    centers[g] = moved(X[model.groups[g].frame], model.groups[g].center);
-    enclose(centers[g], model.groups[g].radius, rows[g / kLanes], g % kLanes);
-  }
+  for (int g = 0; g < model.group_count; ++g) centers[g] = moved(X[model.groups[g].frame], model.groups[g].center);
+  for (int r = 0; r < model.group_rows; ++r) enclose(model, centers, r * kLanes, rows[r]);
   Output output{found, 0, query.lanes, query.first_only};
   const int row_count = model.group_rows + model.scene_row_count;
   for (int g = 0; g < model.group_count; ++g) {
