@@ -67,7 +67,7 @@ struct CollisionChecker::World {
     // The truth is asked each time about those that are not apart for certain: of faces that just touch, rounding
     // decides it, and rounding differs from pose to pose.
     for (const auto& [a, b] : fixed.constant_pairs()) {
-      if (placement.hulls_apart(a, b) || placement.separation(a, b) > kTouching) continue;
+      if (placement.hulls(a, b) == Convex::apart || placement.separation(a, b) > kTouching) continue;
       constant.emplace_back(a, b);
       if (!exact.of_scene(b)) constant_self.emplace_back(a, b);
     }
@@ -121,8 +121,12 @@ struct CollisionChecker::World {
     Placement placement(exact, X_WR, q);
     for (const wide::Unknown& pair : unknown) {
       if (!concerns(pair)) continue;
-      // The truth is dear for meshes; of primitives the first stage knows nearly as much as their hulls would tell.
-      if (exact.involves_mesh(pair.a, pair.b) && placement.hulls_apart(pair.a, pair.b)) continue;
+      // Separating axes tell all of two boxes, and cheaply; primitives are their own hulls.
+      if (!exact.are_boxes(pair.a, pair.b)) {
+        const Convex hulls = placement.hulls(pair.a, pair.b);
+        if (hulls == Convex::apart) continue;
+        if (hulls == Convex::overlapping && !exact.involves_mesh(pair.a, pair.b)) return false;
+      }
       if (placement.share_a_point(pair.a, pair.b)) return false;
       ++asked;
       if (placement.collide(pair.a, pair.b)) return false;

@@ -7,7 +7,6 @@
 #include <set>
 
 #include "core/require.hpp"
-#include "robot/convex_apart.hpp"
 
 namespace opponens::robot {
 
@@ -98,6 +97,13 @@ bool CollisionWorld::involves_mesh(int a, int b) const {
   return is_mesh(a) || is_mesh(b);
 }
 
+bool CollisionWorld::are_boxes(int a, int b) const {
+  const auto is_box = [&](int part) {
+    return std::holds_alternative<Box>(parts[static_cast<std::size_t>(part)].shape.shape());
+  };
+  return is_box(a) && is_box(b);
+}
+
 const std::string& CollisionWorld::name_of(int part) const {
   const auto body = static_cast<std::size_t>(parts[static_cast<std::size_t>(part)].body);
   return of_scene(part) ? body_names[body] : robot.links()[body].name;
@@ -157,10 +163,10 @@ bool Placement::collide(int a, int b) {
   return intersect(A, at_a.X_WG, B, at_b.X_WG);
 }
 
-bool Placement::hulls_apart(int a, int b) {
+Convex Placement::hulls(int a, int b) {
   const CollisionShape& A = world_.parts[static_cast<std::size_t>(a)].shape;
   const CollisionShape& B = world_.parts[static_cast<std::size_t>(b)].shape;
-  return convex_apart(A, at(a).X_WG, B, at(b).X_WG, kCullMargin);
+  return convex_relation(A, at(a).X_WG, B, at(b).X_WG, kCullMargin, kWitnessDepth);
 }
 
 /// Vertices of the hull are points of the mesh, known to a rounding that has to be far below kWitnessDepth.
@@ -184,8 +190,7 @@ bool Placement::share_a_point(int a, int b) {
     return std::holds_alternative<std::shared_ptr<const TriangleMesh>>(shape(part));
   };
   if (is_mesh(a) != is_mesh(b)) return is_mesh(a) ? holds_a_vertex(b, a) : holds_a_vertex(a, b);
-  const bool boxes = std::holds_alternative<Box>(shape(a)) && std::holds_alternative<Box>(shape(b));
-  return boxes && boxes_overlap(at(a).box, at(b).box);
+  return world_.are_boxes(a, b) && boxes_overlap(at(a).box, at(b).box);
 }
 
 double Placement::separation(int a, int b) {
