@@ -67,7 +67,7 @@ struct CollisionChecker::World {
     // The truth is asked each time about those that are not apart for certain: of faces that just touch, rounding
     // decides it, and rounding differs from pose to pose.
     for (const auto& [a, b] : fixed.constant_pairs()) {
-      if (placement.hulls_apart(a, b) || placement.separation(a, b) > kTouching) continue;
+      if (placement.hulls(a, b) == Convex::apart || placement.separation(a, b) > kTouching) continue;
       constant.emplace_back(a, b);
       if (!exact.of_scene(b)) constant_self.emplace_back(a, b);
     }
@@ -111,19 +111,23 @@ struct CollisionChecker::World {
                         [&](const auto& pair) { return placement.collide(pair.first, pair.second); });
   }
 
-  /// Whether no unknown pair of a lane collides.
+  /// Whether no unknown pair of a lane collides. One that touches for certain spares the kinematics too.
   bool settle(std::span<const wide::Unknown> unknown, unsigned lane, const Eigen::Isometry3d& X_WR,
               const Eigen::Ref<const Eigen::VectorXd>& q, std::int64_t& asked) const {
     const auto concerns = [lane](const wide::Unknown& pair) { return (pair.lanes >> lane & 1U) != 0; };
+    const auto touches = [lane](const wide::Unknown& pair) { return (pair.touching >> lane & 1U) != 0; };
     if (std::none_of(unknown.begin(), unknown.end(), concerns)) return true;
+    if (std::any_of(unknown.begin(), unknown.end(), touches)) return false;
     Placement placement(exact, X_WR, q);
     for (const wide::Unknown& pair : unknown) {
       if (!concerns(pair)) continue;
-      // The truth is dear for meshes; of primitives the first stage knows nearly as much as their hulls would tell.
-      if (exact.involves_mesh(pair.a, pair.b)) {
-        if (placement.hulls_apart(pair.a, pair.b)) continue;
-        if (placement.share_a_point(pair.a, pair.b)) return false;
+      // Separating axes tell all of two boxes, and cheaply; primitives are their own hulls.
+      if (!exact.are_boxes(pair.a, pair.b)) {
+        const Convex hulls = placement.hulls(pair.a, pair.b);
+        if (hulls == Convex::apart) continue;
+        if (hulls == Convex::overlapping && !exact.involves_mesh(pair.a, pair.b)) return false;
       }
+      if (placement.share_a_point(pair.a, pair.b)) return false;
       ++asked;
       if (placement.collide(pair.a, pair.b)) return false;
     }
@@ -135,11 +139,12 @@ struct CollisionChecker::World {
     std::span<const wide::Unknown> unknown;  ///< pairs that it cannot tell apart
     unsigned lanes;                          ///< in which it says anything
   };
-  /// Valid until the thread asks again.
-  FirstStage first_stage(const ConfigurationBatch& batch, int first, int count) const {
+  /// Valid until the thread asks again. first_only: rows after one that collides do not matter.
+  FirstStage first_stage(const ConfigurationBatch& batch, int first, int count, bool first_only = false) const {
     static const std::array<float, 12> kUsual = wide_pose(Eigen::Isometry3d::Identity());
     thread_local wide::World::Buffers buffers;
-    const wide::Query query = wide_query(fixed, batch, first, count, kUsual, zero);
+    wide::Query query = wide_query(fixed, batch, first, count, kUsual, zero);
+    query.first_only = first_only;
     const int pairs = fixed.sweep(query, buffers, portable);
     return {{buffers.found.data(), static_cast<std::size_t>(pairs)}, query.lanes};
   }
@@ -147,8 +152,8 @@ struct CollisionChecker::World {
   /// Asks for such rows at once. Calls verdict(row, free) for each in turn until it returns true.
   template <typename Verdict>
   void sweep_rows(const ConfigurationBatch& batch, int first, int count, const Verdict& verdict,
-                  CollisionCounts& counts) const {
-    const FirstStage stage = first_stage(batch, first, count);
+                  CollisionCounts& counts, bool first_only = false) const {
+    const FirstStage stage = first_stage(batch, first, count, first_only);
     counts.configurations += count;
     for (int row = first; row < first + count; ++row) {
       const Eigen::Map<const Eigen::VectorXd> q(batch.row(row).data(), batch.cols());
@@ -162,13 +167,14 @@ struct CollisionChecker::World {
 
   /// Sweeps a whole batch so.
   template <typename Verdict>
-  void sweep_batch(const ConfigurationBatch& batch, const Verdict& verdict, CollisionCounts& counts) const {
+  void sweep_batch(const ConfigurationBatch& batch, const Verdict& verdict, CollisionCounts& counts,
+                   bool first_only) const {
     require_batch(batch);
     bool ended = false;
     for (int first = 0; first < batch.rows() && !ended; first += wide::kLanes) {
       const int count = std::min(wide::kLanes, static_cast<int>(batch.rows()) - first);
       sweep_rows(
-          batch, first, count, [&](int row, bool free) { return ended = verdict(row, free); }, counts);
+          batch, first, count, [&](int row, bool free) { return ended = verdict(row, free); }, counts, first_only);
     }
   }
 
@@ -215,7 +221,7 @@ std::vector<bool> CollisionChecker::free_rows(const ConfigurationBatch& batch, C
     verdicts.push_back(free);
     return false;
   };
-  world_->sweep_batch(batch, keep, counts != nullptr ? *counts : own);
+  world_->sweep_batch(batch, keep, counts != nullptr ? *counts : own, false);
   return verdicts;
 }
 
@@ -226,7 +232,7 @@ std::optional<int> CollisionChecker::first_colliding(const ConfigurationBatch& b
     if (!free) colliding = row;
     return !free;
   };
-  world_->sweep_batch(batch, keep, counts != nullptr ? *counts : own);
+  world_->sweep_batch(batch, keep, counts != nullptr ? *counts : own, true);
   return colliding;
 }
 

@@ -7,7 +7,6 @@
 #include <set>
 
 #include "core/require.hpp"
-#include "robot/convex_apart.hpp"
 
 namespace opponens::robot {
 
@@ -45,6 +44,16 @@ bool deep_inside(const Shape& shape, const Eigen::Vector3d& p) {
   const auto* cylinder = std::get_if<Cylinder>(&shape);
   return cylinder != nullptr && p.head<2>().norm() < cylinder->radius - kWitnessDepth &&
          std::abs(p.z()) < 0.5 * cylinder->length - kWitnessDepth;
+}
+
+/// For the parallel edges of two boxes, whose cross product is nothing but rounding.
+constexpr double kNothing = 1e-14;
+
+/// Whether two boxes share a point: no axis keeps them apart though both are made smaller.
+bool boxes_overlap(OrientedBox a, OrientedBox b) {
+  a.half_extents.array() -= kWitnessDepth;
+  b.half_extents.array() -= kWitnessDepth;
+  return a.half_extents.minCoeff() > 0.0 && b.half_extents.minCoeff() > 0.0 && !boxes_apart(a, b, kNothing);
 }
 
 Placement::Placed place(const CollisionShape& shape, const Eigen::Isometry3d& X_WG) {
@@ -86,6 +95,13 @@ bool CollisionWorld::involves_mesh(int a, int b) const {
     return std::holds_alternative<std::shared_ptr<const TriangleMesh>>(shape);
   };
   return is_mesh(a) || is_mesh(b);
+}
+
+bool CollisionWorld::are_boxes(int a, int b) const {
+  const auto is_box = [&](int part) {
+    return std::holds_alternative<Box>(parts[static_cast<std::size_t>(part)].shape.shape());
+  };
+  return is_box(a) && is_box(b);
 }
 
 const std::string& CollisionWorld::name_of(int part) const {
@@ -147,10 +163,10 @@ bool Placement::collide(int a, int b) {
   return intersect(A, at_a.X_WG, B, at_b.X_WG);
 }
 
-bool Placement::hulls_apart(int a, int b) {
+Convex Placement::hulls(int a, int b) {
   const CollisionShape& A = world_.parts[static_cast<std::size_t>(a)].shape;
   const CollisionShape& B = world_.parts[static_cast<std::size_t>(b)].shape;
-  return convex_apart(A, at(a).X_WG, B, at(b).X_WG, kCullMargin);
+  return convex_relation(A, at(a).X_WG, B, at(b).X_WG, kCullMargin, kWitnessDepth);
 }
 
 /// Vertices of the hull are points of the mesh, known to a rounding that has to be far below kWitnessDepth.
@@ -167,12 +183,14 @@ bool Placement::holds_a_vertex(int primitive, int mesh) {
 }
 
 bool Placement::share_a_point(int a, int b) {
-  const auto is_mesh = [&](int part) {
-    return std::holds_alternative<std::shared_ptr<const TriangleMesh>>(
-        world_.parts[static_cast<std::size_t>(part)].shape.shape());
+  const auto shape = [&](int part) -> const Shape& {
+    return world_.parts[static_cast<std::size_t>(part)].shape.shape();
   };
-  if (is_mesh(a) == is_mesh(b)) return false;
-  return is_mesh(a) ? holds_a_vertex(b, a) : holds_a_vertex(a, b);
+  const auto is_mesh = [&](int part) {
+    return std::holds_alternative<std::shared_ptr<const TriangleMesh>>(shape(part));
+  };
+  if (is_mesh(a) != is_mesh(b)) return is_mesh(a) ? holds_a_vertex(b, a) : holds_a_vertex(a, b);
+  return world_.are_boxes(a, b) && boxes_overlap(at(a).box, at(b).box);
 }
 
 double Placement::separation(int a, int b) {

@@ -12,6 +12,7 @@
 #include <Eigen/Geometry>
 
 #include "robot/collision.hpp"
+#include "robot/convex_apart.hpp"
 #include "robot/narrow_phase.hpp"
 #include "robot/robot_model.hpp"
 #include "robot/scene.hpp"
@@ -38,6 +39,7 @@ struct CollisionWorld {
 
   bool of_scene(int part) const { return part >= robot_parts; }
   bool involves_mesh(int a, int b) const;
+  bool are_boxes(int a, int b) const;
   const std::string& name_of(int part) const;
   /// Names of the bodies of two parts: a scene body last, two links in alphabetical order.
   BodyPair names_of(int a, int b) const;
@@ -59,10 +61,10 @@ class Placement {
 
   /// The exact verdict on a pair: bounding volumes, then the narrow phase.
   bool collide(int a, int b);
-  /// Whether the convex hulls of two parts are apart for certain.
-  bool hulls_apart(int a, int b);
-  /// Whether a vertex of a mesh was found inside a primitive: two such parts collide for certain, which FCL would find
-  /// out by descending into the mesh. Not found does not mean that they are apart.
+  /// What is certain of the convex hulls of two parts.
+  Convex hulls(int a, int b);
+  /// Whether a vertex of a mesh was found inside a primitive, or two boxes overlap by more than rounding: two such
+  /// parts collide for certain, which FCL takes longer to find out. Not found does not mean that they are apart.
   bool share_a_point(int a, int b);
   double separation(int a, int b);
   /// A lower bound of the separation from bounding volumes, m.

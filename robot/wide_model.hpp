@@ -84,8 +84,8 @@ struct alignas(4 * kLanes) BoxRow {
 };
 
 /// Views of arrays; the sweep allocates nothing and calls nothing that is compiled elsewhere.
-///
 struct Model {
+  float margin;  ///< m, by which sizes are enlarged; above the error of a point's place
   const Frame* frames;
   int frame_count;
   const Part* parts;  ///< of the robot, then of the scene
@@ -108,21 +108,23 @@ struct Unknown {
   int a;  ///< part of the robot
   int b;  ///< part of the robot or the scene
   unsigned lanes;
+  unsigned touching;  ///< lanes of them in which a point was found that is inside both by more than the margin
 };
 
 struct Query {
   const double* q[kLanes];  ///< [d] each; idle lanes repeat another
   unsigned lanes;           ///< asked for
   const float* root;        ///< X of the robot's root in its usual place, rotation row-major then translation [12]
+  bool first_only = false;  ///< lanes after one that touches do not matter
 };
 
 /// Floats of memory that the sweep needs, to be aligned to 64 bytes.
 int workspace_size(const Model& model);
 
-/// Writes at most one Unknown for each pair into found and returns how many. A lane that no Unknown names is free of
-/// collision: by single-precision kinematics with an error far below the margin, balls around the shapes (ball, ball
-/// tree) and the separating axis theorem on oriented boxes. Portable; sweep_avx2 is the same for a processor with AVX2
-/// and FMA.
+/// Writes at most one Unknown for each pair into found and returns how many. A lane found to touch is not pursued
+/// further. A lane that matters and that no Unknown names is free of collision: by single-precision kinematics with an
+/// error far below the margin, balls around the shapes (ball, ball tree) and the separating axis theorem on oriented
+/// boxes. Portable; sweep_avx2 is the same for a processor with AVX2 and FMA.
 int sweep(const Model& model, const Query& query, float* workspace, Unknown* found);
 int sweep_avx2(const Model& model, const Query& query, float* workspace, Unknown* found);
 

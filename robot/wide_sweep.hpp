@@ -55,6 +55,9 @@ struct LaneBox {
 }
 [[gnu::always_inline]] inline V positive(const V& v) { return v > 0.0F ? v : V{}; }
 
+[[gnu::always_inline]] inline V lesser(const V& a, const V& b) { return a < b ? a : b; }
+[[gnu::always_inline]] inline V greater(const V& a, const V& b) { return a > b ? a : b; }
+
 [[gnu::always_inline]] inline V dot(const V3& a, const V3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 [[gnu::always_inline]] inline V3 minus(const V3& a, const V3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 
@@ -333,6 +336,87 @@ constexpr int kStack = 256;  ///< entries of a descent; wider trees end it with 
   return trees_near(model.nodes, a.root, X_a, b.root, X_b, lanes);
 }
 
+/// Takes a point, given in the frame of a box or the cylinder in it, towards the nearest one of its solid made smaller
+/// by `inwards` (less than any half extent). Returns the lanes in which it was within the solid made smaller by half of
+/// that.
+template <bool Round>
+[[gnu::always_inline]] inline unsigned draw_into(const float* half, float inwards, V3& p) {
+  const auto clamp = [](const V& v, float most) { return greater(lesser(v, all(most)), all(-most)); };
+  const float slack = 0.5F * inwards;
+  Bits inside = magnitude(p.z) <= half[2] - slack;
+  if (Round) {
+    const V across = p.x * p.x + p.y * p.y;
+    const float within = half[0] - slack;
+    const V radius = root(across);
+    inside &= across < within * within;
+    const V shrink = lesser(all(1), (half[0] - inwards) / greater(radius, all(1e-12F)));
+    p.x = p.x * shrink;
+    p.y = p.y * shrink;
+  } else {
+    inside &= magnitude(p.x) <= half[0] - slack;
+    inside &= magnitude(p.y) <= half[1] - slack;
+    p.x = clamp(p.x, half[0] - inwards);
+    p.y = clamp(p.y, half[1] - inwards);
+  }
+  p.z = clamp(p.z, half[2] - inwards);
+  return lanes_of(inside);
+}
+
+[[gnu::always_inline]] inline V3 into(const LaneBox& box, const V3& p) {
+  const V3 d = minus(p, box.center);
+  return {dot(d, box.axis[0]), dot(d, box.axis[1]), dot(d, box.axis[2])};
+}
+[[gnu::always_inline]] inline V3 out_of(const LaneBox& box, const V3& p) {
+  return {box.center.x + box.axis[0].x * p.x + box.axis[1].x * p.y + box.axis[2].x * p.z,
+          box.center.y + box.axis[0].y * p.x + box.axis[1].y * p.y + box.axis[2].y * p.z,
+          box.center.z + box.axis[0].z * p.x + box.axis[1].z * p.y + box.axis[2].z * p.z};
+}
+
+constexpr int kDraws = 5;
+/// Share of the margin. Sizes are enlarged by one of it; a point within half of this is deeper than the rest, and its
+/// place is known to far less.
+constexpr float kInwards = 5.0F;
+
+/// Lanes in which alternating projections onto two boxes, or the cylinders in them, found a point inside both.
+template <bool RoundA, bool RoundB>
+[[gnu::noinline]] unsigned boxes_touch(const LaneBox& a, const float* h, const LaneBox& b, const float* g,
+                                       float inwards, unsigned lanes) {
+  V3 in_a = into(a, b.center);
+  draw_into<RoundA>(h, inwards, in_a);
+  V3 p = out_of(a, in_a);
+  unsigned touching = 0;
+  for (int draw = 0; draw < kDraws && touching != lanes; ++draw) {
+    V3 in_b = into(b, p);
+    touching |= lanes & draw_into<RoundB>(g, inwards, in_b);  // p was drawn into a
+    p = out_of(b, in_b);
+    in_a = into(a, p);
+    touching |= lanes & draw_into<RoundA>(h, inwards, in_a);
+    p = out_of(a, in_a);
+  }
+  return touching;
+}
+
+/// Lanes of those given in which two parts touch for certain; none where one is known by its balls only.
+[[gnu::always_inline]] inline unsigned parts_touch(const Scratch& scratch, int i, int j, unsigned lanes) {
+  const Part& a = scratch.model.parts[i];
+  const Part& b = scratch.model.parts[j];
+  if (a.form == Form::other || b.form == Form::other) return 0;
+  const LaneBox& box_a = scratch.boxes[i];
+  const LaneBox& box_b = scratch.boxes[j];
+  const float* h = a.half_extents;
+  const float* g = b.half_extents;
+  const float inwards = kInwards * scratch.model.margin;
+  for (int k = 0; k < 3; ++k) {
+    if (h[k] <= inwards || g[k] <= inwards) return 0;
+  }
+  if (a.form == Form::cylinder) {
+    return b.form == Form::cylinder ? boxes_touch<true, true>(box_a, h, box_b, g, inwards, lanes)
+                                    : boxes_touch<true, false>(box_a, h, box_b, g, inwards, lanes);
+  }
+  return b.form == Form::cylinder ? boxes_touch<false, true>(box_a, h, box_b, g, inwards, lanes)
+                                  : boxes_touch<false, false>(box_a, h, box_b, g, inwards, lanes);
+}
+
 /// Where the parts of the workspace begin, in floats.
 struct Layout {
   int poses = 0;
@@ -374,6 +458,14 @@ struct Layout {
 struct Output {
   Unknown* found;
   int count;
+  unsigned open;  ///< lanes still to be decided
+  bool first_only;
+
+  void add(int a, int b, unsigned near, unsigned touching) {
+    found[count++] = {a, b, near, touching};
+    open &= ~touching;
+    if (first_only && touching != 0) open &= (touching & (0U - touching)) - 1U;
+  }
 };
 
 /// The parts of two groups whose balls meet in some lanes.
@@ -381,30 +473,51 @@ struct Output {
   for (int k = begin; k < end; ++k) {
     const PartPair& pair = scratch.model.part_pairs[k];
     const V3 d = minus(scratch.balls[pair.a], scratch.balls[pair.b]);
-    unsigned near = lanes & lanes_of(dot(d, d) <= all(pair.squared_reach));
+    unsigned near = lanes & output.open & lanes_of(dot(d, d) <= all(pair.squared_reach));
     if (near != 0) near = parts_near(scratch, pair.a, pair.b, near);
-    if (near != 0) output.found[output.count++] = {pair.a, pair.b, near};
+    if (near == 0) continue;
+    output.add(pair.a, pair.b, near, parts_touch(scratch, pair.a, pair.b, near));
+    if (output.open == 0) return;
   }
 }
 
-[[gnu::always_inline]] inline V lesser(const V& a, const V& b) { return a < b ? a : b; }
-[[gnu::always_inline]] inline V greater(const V& a, const V& b) { return a > b ? a : b; }
-
-/// Least of all lanes, in each.
-[[gnu::always_inline]] inline V least_of(V v) {
-  v = lesser(v, __builtin_shuffle(v, Bits{4, 5, 6, 7, 0, 1, 2, 3}));
-  v = lesser(v, __builtin_shuffle(v, Bits{2, 3, 0, 1, 6, 7, 4, 5}));
-  return lesser(v, __builtin_shuffle(v, Bits{1, 0, 3, 2, 5, 4, 7, 6}));
+/// The least lane of each of kLanes numbers, side by side: halved three times.
+[[gnu::always_inline]] inline V least_of_each(const V (&v)[kLanes]) {
+  V pairs[4];
+  for (int k = 0; k < 4; ++k) {
+    pairs[k] = lesser(__builtin_shuffle(v[2 * k], v[2 * k + 1], Bits{0, 8, 2, 10, 4, 12, 6, 14}),
+                      __builtin_shuffle(v[2 * k], v[2 * k + 1], Bits{1, 9, 3, 11, 5, 13, 7, 15}));
+  }
+  V fours[2];
+  for (int k = 0; k < 2; ++k) {
+    fours[k] = lesser(__builtin_shuffle(pairs[2 * k], pairs[2 * k + 1], Bits{0, 1, 8, 9, 4, 5, 12, 13}),
+                      __builtin_shuffle(pairs[2 * k], pairs[2 * k + 1], Bits{2, 3, 10, 11, 6, 7, 14, 15}));
+  }
+  return lesser(__builtin_shuffle(fours[0], fours[1], Bits{0, 1, 2, 3, 8, 9, 10, 11}),
+                __builtin_shuffle(fours[0], fours[1], Bits{4, 5, 6, 7, 12, 13, 14, 15}));
 }
 
-/// Writes the box around a group's balls of all lanes into its place in a row.
-[[gnu::always_inline]] inline void enclose(const V3& center, float radius, BoxRow& row, int place) {
-  const V* const coordinate[3] = {&center.x, &center.y, &center.z};
+[[gnu::always_inline]] inline const V& coordinate(const V3& p, int axis) {
+  return axis == 0 ? p.x : axis == 1 ? p.y : p.z;
+}
+
+/// The boxes around a row of groups' balls of all lanes. Places beyond the last group repeat it.
+[[gnu::always_inline]] inline void enclose(const Model& model, const V3* centers, int first, BoxRow& row) {
+  typedef float Stored __attribute__((vector_size(4 * kLanes), may_alias));
+  int group[kLanes];
+  V radius;
+  for (int place = 0; place < kLanes; ++place) {
+    group[place] = first + place < model.group_count ? first + place : model.group_count - 1;
+    radius[place] = model.groups[group[place]].radius;
+  }
   for (int axis = 0; axis < 3; ++axis) {
-    const float low = least_of(*coordinate[axis])[0];
-    const float high = -least_of(-*coordinate[axis])[0];
-    row.center[axis][place] = 0.5F * (low + high);
-    row.half[axis][place] = 0.5F * (high - low) + radius;
+    V v[kLanes];
+    for (int place = 0; place < kLanes; ++place) v[place] = coordinate(centers[group[place]], axis);
+    const V low = least_of_each(v);
+    for (V& number : v) number = -number;
+    const V high = -least_of_each(v);
+    *reinterpret_cast<Stored*>(row.center[axis]) = 0.5F * (low + high);
+    *reinterpret_cast<Stored*>(row.half[axis]) = 0.5F * (high - low) + radius;
   }
 }
 
@@ -433,11 +546,9 @@ struct Output {
     const float* c = model.parts[i].ball_center;
     balls[i] = {all(c[0]), all(c[1]), all(c[2])};
   }
-  for (int g = 0; g < model.group_count; ++g) {
-    centers[g] = moved(X[model.groups[g].frame], model.groups[g].center);
-    enclose(centers[g], model.groups[g].radius, rows[g / kLanes], g % kLanes);
-  }
-  Output output{found, 0};
+  for (int g = 0; g < model.group_count; ++g) centers[g] = moved(X[model.groups[g].frame], model.groups[g].center);
+  for (int r = 0; r < model.group_rows; ++r) enclose(model, centers, r * kLanes, rows[r]);
+  Output output{found, 0, query.lanes, query.first_only};
   const int row_count = model.group_rows + model.scene_row_count;
   for (int g = 0; g < model.group_count; ++g) {
     const BoxRow& own = rows[g / kLanes];
@@ -451,7 +562,7 @@ struct Output {
       for (; bits != 0; bits &= bits - 1) {
         const int place = __builtin_ctz(bits);
         const GroupPair& pair = model.pairs[(g * row_count + r) * kLanes + place];
-        unsigned near = query.lanes;
+        unsigned near = output.open;
         if (scene) {
           const SceneBox& box = model.scene_boxes[(r - model.group_rows) * kLanes + place];
           near &= lanes_of(near_scene_box(centers[g], all(pair.squared_reach), box));
@@ -459,7 +570,9 @@ struct Output {
           const V3 d = minus(centers[g], centers[r * kLanes + place]);
           near &= lanes_of(dot(d, d) <= all(pair.squared_reach));
         }
-        if (near != 0) check_parts(scratch, pair.begin, pair.end, near, output);
+        if (near == 0) continue;
+        check_parts(scratch, pair.begin, pair.end, near, output);
+        if (output.open == 0) return output.count;
       }
     }
   }

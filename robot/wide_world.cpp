@@ -334,6 +334,7 @@ bool World::out_of_reach(int group, const Part& other) const {
 Model World::model() const {
   const auto size = [](const auto& list) { return static_cast<int>(list.size()); };
   Model model;
+  model.margin = static_cast<float>(margin_);
   model.frames = frames_.data();
   model.frame_count = size(frames_);
   model.parts = parts_.data();

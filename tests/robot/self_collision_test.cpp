@@ -36,6 +36,7 @@ RobotDescription slider() {
                             0.0,
                             1.0,
                             1.0,
+                            {},
                             {}});
     robot.links.push_back({name, joint, shape});
     if (type != JointType::fixed) robot.hand_joints.push_back(name + "_joint");
