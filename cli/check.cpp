@@ -156,7 +156,7 @@ fs::path scene_beside(const fs::path& request) {
 /// Zero, or the nearest position that the limits allow.
 Eigen::VectorXd neutral(const robot::RobotModel& robot) { return robot.clip(Eigen::VectorXd::Zero(robot.dof())); }
 
-struct Tally {
+struct CheckTally {
   std::int64_t requests = 0;
   std::int64_t start_free = 0;
   std::int64_t goals = 0;
@@ -165,7 +165,7 @@ struct Tally {
 
 /// Joints that a state lacks are taken from the start, of a start from the scene, and else as near zero as they may be.
 Json check_request(const fs::path& file, const robot::RobotModel& robot, const Place& at, const Console& console,
-                   Tally& tally) {
+                   CheckTally& tally) {
   const robot::MotionRequest request = robot::load_motion_request(file);
   const robot::JointState of_scene{at.scene.start_joints, at.scene.start};
   const robot::Completed start = complete(robot, request.start, complete(robot, of_scene, neutral(robot)).q);
@@ -207,7 +207,7 @@ void tell_joints(const Json& request, const Console& console, Notes& notes) {
 Json check_requests(const CheckOptions& options, const robot::RobotModel& robot, const Console& console, Notes& notes,
                     Json& summary) {
   Json requests = Json::array();
-  Tally tally;
+  CheckTally tally;
   std::optional<Place> shared;
   if (!options.scene.empty()) shared.emplace(place(robot, find_file(options.scene), options.base));
   Progress progress(console, "check");

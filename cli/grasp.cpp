@@ -106,7 +106,7 @@ std::vector<SynergyGroup> chosen_groups(const SynergySet& set, const std::string
   throw InputError("--group " + name + ": no such group; there are: " + known);
 }
 
-struct Tally {
+struct GraspTally {
   Json grasps = Json::array();
   Json groups = Json::array();
   std::vector<std::string> ids;
@@ -116,7 +116,7 @@ struct Tally {
 };
 
 void store_group(const SynergyGroup& group, const grasp::SearchResult& found, const NamedWorld& world,
-                 const storage::Provenance& origin, storage::Store& store, Tally& tally) {
+                 const storage::Provenance& origin, storage::Store& store, GraspTally& tally) {
   const Json summary = {{"name", group.name},
                         {"found", found.grasps.size()},
                         {"trials", found.trials},
@@ -169,7 +169,7 @@ int grasp(const GraspOptions& options, const Console& console) {
   settings.max_trials = options.max_trials;
   settings.min_trials = options.min_trials;
   settings.threads = threads;
-  Tally tally;
+  GraspTally tally;
   for (const auto& group : groups) {
     Progress progress(console, "grasps of group " + group.name);
     const auto found = grasp::search_grasps(

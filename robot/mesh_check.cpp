@@ -113,9 +113,10 @@ std::string size_defect(const MeshReport& report) {
   const double longest = report.extent.maxCoeff();
   if (longest >= kShortest && longest <= kLongest) return "";
   std::string sentence = "is ";
-  sentence += text(longest) + " m long: a wrong unit?";
+  sentence.append(text(longest)).append(" m long: a wrong unit?");
   for (const double scale : report.likely_scales) {
-    sentence += " " + unit_of_scale(scale) + " it would be " + text(longest * scale) + " m;";
+    sentence.append(" ").append(unit_of_scale(scale)).append(" it would be ");
+    sentence.append(text(longest * scale)).append(" m;");
   }
   if (sentence.back() == ';') sentence.pop_back();
   return sentence;

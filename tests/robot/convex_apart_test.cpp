@@ -35,15 +35,16 @@ std::vector<TriangleMesh> meshes() {
   for (Eigen::Index i = 0; i < cloud.vertices.cols(); ++i) {
     cloud.vertices.col(i) << rng.normal(), rng.normal(), 3.0 + rng.normal();
   }
-  cloud.triangles.resize(3, 1);
-  cloud.triangles << 0, 1, 2;
+  cloud.triangles.resize(3, cloud.vertices.cols() / 3);
+  for (int i = 0; i < static_cast<int>(cloud.triangles.cols()); ++i)
+    cloud.triangles.col(i) << 3 * i, 3 * i + 1, 3 * i + 2;
   TriangleMesh flat = cloud;
   flat.vertices.row(2).setConstant(0.5);
   TriangleMesh line = flat;
   line.vertices.row(0) = 0.3 * line.vertices.row(1);
   TriangleMesh one = triangulate(Box{{1, 1, 1}});
   one.vertices = one.vertices.leftCols(3).eval();
-  one.triangles = cloud.triangles;
+  one.triangles = cloud.triangles.leftCols(1).eval();
   TriangleMesh tiny = torus(1e-4, 2e-5, 16);
   TriangleMesh far = torus(0.1, 0.02);
   far.vertices.colwise() += Vector3d(1000, -500, 2);
