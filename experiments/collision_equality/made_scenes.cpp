@@ -23,7 +23,9 @@ Isometry3d pose(double x, double y, double z, double turn = 0.0) {
   return X;
 }
 
-robot::Shape mesh_of(robot::TriangleMesh mesh) { return std::make_shared<const robot::TriangleMesh>(std::move(mesh)); }
+robot::Shape shared_mesh(robot::TriangleMesh mesh) {
+  return std::make_shared<const robot::TriangleMesh>(std::move(mesh));
+}
 
 void add(robot::Scene& scene, const robot::Shape& shape, const Isometry3d& X_WB) {
   scene.bodies.push_back({"body_" + std::to_string(scene.bodies.size()), X_WB, {{shape}}});
@@ -32,7 +34,7 @@ void add(robot::Scene& scene, const robot::Shape& shape, const Isometry3d& X_WB)
 robot::Scene balloon() {
   robot::Scene scene;
   scene.name = "balloon";
-  add(scene, mesh_of(robot::triangulate(robot::Sphere{0.35}, 64)), pose(0.6, 0.1, 0.5));
+  add(scene, shared_mesh(robot::triangulate(robot::Sphere{0.35}, 64)), pose(0.6, 0.1, 0.5));
   return scene;
 }
 
@@ -46,7 +48,7 @@ robot::Scene plates() {
   sheet.vertices << 0, 0.5, 0.5, 0, 0, 0, 0.5, 0.5, 0, 0, 0, 0;
   sheet.triangles.resize(3, 2);
   sheet.triangles << 0, 0, 1, 2, 2, 3;
-  add(scene, mesh_of(sheet), pose(-0.7, -0.2, 0.4, 0.4));
+  add(scene, shared_mesh(sheet), pose(-0.7, -0.2, 0.4, 0.4));
   return scene;
 }
 
@@ -54,11 +56,11 @@ robot::Scene mugs() {
   robot::Scene scene;
   scene.name = "mugs";
   add(scene, robot::Box{{0.6, 0.8, 0.04}}, pose(0.55, 0, 0.1));
-  const robot::Shape mug = mesh_of(robot::mug());
+  const robot::Shape mug = shared_mesh(robot::mug());
   add(scene, mug, pose(0.45, -0.2, 0.121));
   add(scene, mug, pose(0.5, 0.05, 0.121));
   add(scene, mug, pose(0.6, 0.3, 0.4, 1.1));
-  add(scene, mesh_of(robot::torus(0.12, 0.02)), pose(0.35, 0.15, 0.6, 0.7));
+  add(scene, shared_mesh(robot::torus(0.12, 0.02)), pose(0.35, 0.15, 0.6, 0.7));
   return scene;
 }
 
@@ -66,7 +68,7 @@ robot::Scene pebbles() {
   robot::Scene scene;
   scene.name = "pebbles";
   Rng rng = stream(1, "pebbles");
-  const robot::Shape ring = mesh_of(robot::torus(0.008, 0.002, 16));
+  const robot::Shape ring = shared_mesh(robot::torus(0.008, 0.002, 16));
   for (int i = 0; i < 200; ++i) {
     const double size = rng.uniform(0.004, 0.02);
     const robot::Shape shapes[] = {robot::Box{{size, 0.5 * size, 0.3 * size}}, robot::Sphere{0.5 * size},

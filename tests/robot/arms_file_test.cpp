@@ -16,8 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string joint(const std::string& name, const std::string& parent, const std::string& child,
-                  const std::string& more = "") {
+std::string joint_element(const std::string& name, const std::string& parent, const std::string& child,
+                          const std::string& more = "") {
   return "<joint name='" + name + "' type='revolute'><parent link='" + parent + "'/><child link='" + child +
          "'/><limit lower='-1' upper='2' effort='1' velocity='1'/>" + more + "</joint>";
 }
@@ -30,9 +30,10 @@ class ArmsFile : public ::testing::Test {
       : folder_(fs::temp_directory_path() / (std::string("opponens_arms_file_") +
                                              ::testing::UnitTest::GetInstance()->current_test_info()->name())) {
     fs::create_directories(folder_);
-    write("arm.urdf", "<robot name='r'><link name='p'/><link name='q'/>" + joint("s", "p", "q") + "</robot>");
-    write("hand.urdf", "<robot name='h'><link name='a'/><link name='b'/><link name='c'/>" + joint("j", "a", "b") +
-                           joint("k", "a", "c", "<mimic joint='j' multiplier='0.5'/>") + "</robot>");
+    write("arm.urdf", "<robot name='r'><link name='p'/><link name='q'/>" + joint_element("s", "p", "q") + "</robot>");
+    write("hand.urdf", "<robot name='h'><link name='a'/><link name='b'/><link name='c'/>" +
+                           joint_element("j", "a", "b") +
+                           joint_element("k", "a", "c", "<mimic joint='j' multiplier='0.5'/>") + "</robot>");
     write("hand.yaml", "urdf: hand.urdf\npalm_link: a\njoints: [j]\n");
     write("stand.urdf", "<robot name='t'><link name='q'/></robot>");
   }

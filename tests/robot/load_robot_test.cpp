@@ -107,7 +107,9 @@ TEST_F(LoadRobot, RobotYamlErrors) {
   write("hand.yaml", "urdf: hand.urdf\npalm_link: a\njoints: [j]\n");
   const std::string arm = "arm: {urdf: arm.urdf, joints: [s]}\nhand: hand.yaml\n";
   const std::string mount = "mount: {parent: q, xyz: [0, 0, 0.1]}\n";
-  const auto yaml_error = [&](const std::string& text) { return error_of(write("r.yaml", text), load_robot); };
+  const auto yaml_error = [&](const std::string& text) {
+    return error_of(write("r.yaml", text), [](const std::filesystem::path& file) { return load_robot(file); });
+  };
   EXPECT_EQ(yaml_error(arm + mount), "no error");
   expect_contains(yaml_error(arm), {"r.yaml", "'mount'"});
   expect_contains(yaml_error(arm + "mount: {parent: z}\n"), {"r.yaml:3", "mount.parent", "'z'"});
@@ -172,7 +174,9 @@ TEST_F(LoadRobot, PrefixTellsTheArmsLinksFromTheHands) {
   EXPECT_EQ(names, (std::vector<std::string>{"arm_a", "arm_b", "a", "b"}));
   EXPECT_EQ(shapes, (std::vector<std::size_t>{1, 0, 0, 0})) << "of the arm's b and the hand's a";
   EXPECT_EQ(loaded.arm_tip_link, "arm_b");
-  const auto yaml_error = [&](const std::string& text) { return error_of(write("r.yaml", text), load_robot); };
+  const auto yaml_error = [&](const std::string& text) {
+    return error_of(write("r.yaml", text), [](const std::filesystem::path& file) { return load_robot(file); });
+  };
   expect_contains(yaml_error("arm: {urdf: arm.urdf, joints: [s]}\nhand: hand.yaml\nmount: {parent: b}\n"),
                   {"r.yaml:3", "'a'", "arm.link_prefix"});
   expect_contains(yaml_error("arm: {urdf: hand.urdf, joints: [s], link_prefix: arm_}\nhand: hand.yaml\n"),

@@ -27,7 +27,7 @@ const RobotDescription& dual() {
   return description;
 }
 
-Eigen::VectorXd random_configuration(const RobotModel& model, Rng& rng) {
+Eigen::VectorXd random_dual_configuration(const RobotModel& model, Rng& rng) {
   Eigen::VectorXd q(model.dof());
   for (int i = 0; i < model.dof(); ++i) q[i] = rng.uniform(model.lower()[i], model.upper()[i]);
   return q;
@@ -107,8 +107,8 @@ TEST(RobotArms, EachArmIsTheOneArmRobotMovedToItsBase) {
   const RobotModel both(drive_arms(dual(), "both"));
   Rng rng(7);
   for (int sample = 0; sample < 50; ++sample) {
-    const Eigen::VectorXd q_right = random_configuration(single, rng);
-    const Eigen::VectorXd q_left = random_configuration(single, rng);
+    const Eigen::VectorXd q_right = random_dual_configuration(single, rng);
+    const Eigen::VectorXd q_left = random_dual_configuration(single, rng);
     Eigen::VectorXd q(44);
     q << q_right.head(6), q_left.head(6), q_right.tail(16), q_left.tail(16);
     for (const Link& link : single.links()) {
@@ -131,7 +131,7 @@ TEST(RobotArms, ArmThatIsNotDrivenStandsAtItsRest) {
   Rng rng(8);
   const Eigen::Isometry3d expected = pose_of(left, left.rest(), "left/link_3.0_tip");
   for (int sample = 0; sample < 5; ++sample) {
-    EXPECT_LT(difference(pose_of(right, random_configuration(right, rng), "left/link_3.0_tip"), expected), 1e-15);
+    EXPECT_LT(difference(pose_of(right, random_dual_configuration(right, rng), "left/link_3.0_tip"), expected), 1e-15);
   }
   EXPECT_NEAR(left.rest()[1], -1.9122, 1e-12) << "as the file says";
   EXPECT_NEAR(left.rest()[6 + 12], 0.263, 1e-12) << "not named: the limit nearest to zero";
@@ -165,7 +165,7 @@ TEST(RobotArms, LeftHandIsTheMirrorImageOfTheRight) {
   };
   Rng rng(9);
   for (int sample = 0; sample < 100; ++sample) {
-    const Eigen::VectorXd q = random_configuration(right, rng);
+    const Eigen::VectorXd q = random_dual_configuration(right, rng);
     const std::vector<Eigen::Isometry3d> X_right = right.link_poses(q);
     const std::vector<Eigen::Isometry3d> X_left = left.link_poses(q);
     for (std::size_t l = 0; l < right.links().size(); ++l) {
@@ -250,7 +250,7 @@ TEST(RobotArms, NoPairAlwaysCollides) {
   std::map<BodyPair, int> count;
   const int samples = 300;
   for (int sample = 0; sample < samples; ++sample) {
-    for (const BodyPair& pair : checker.colliding_pairs(random_configuration(both, rng))) ++count[pair];
+    for (const BodyPair& pair : checker.colliding_pairs(random_dual_configuration(both, rng))) ++count[pair];
   }
   for (const auto& [pair, times] : count) EXPECT_LT(times, samples / 2) << pair.first << " " << pair.second;
 }
