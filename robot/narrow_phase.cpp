@@ -143,6 +143,18 @@ struct BoundsOf {
   }
 };
 
+/// A necessary sign that a cover belongs to a mesh: its root ball contains the mesh. Copies of a mesh that were changed
+/// afterwards fail it.
+bool may_cover(const MeshCover& cover, const TriangleMesh& mesh) {
+  const SphereTree::Node& root = cover.tree.nodes.at(0);
+  for (const auto& triangle : mesh.triangles.colwise()) {
+    for (int k = 0; k < 3; ++k) {
+      if ((mesh.vertices.col(triangle[k]) - root.center).norm() > root.radius * (1.0 + 1e-9)) return false;
+    }
+  }
+  return true;
+}
+
 std::shared_ptr<const CollisionShape::Data> make_data(const Shape& shape) {
   auto data = std::make_shared<CollisionShape::Data>();
   data->shape = shape;
@@ -150,7 +162,11 @@ std::shared_ptr<const CollisionShape::Data> make_data(const Shape& shape) {
   data->bounds = std::visit(BoundsOf{}, shape);
   // FCL fills this cache lazily elsewhere; filled here, the geometry is read-only afterwards.
   if (data->primitive != nullptr) data->primitive->computeLocalAABB();
-  if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&shape)) data->mesh = *mesh;
+  if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&shape)) {
+    data->mesh = *mesh;
+    require((*mesh)->cover == nullptr || may_cover(*(*mesh)->cover, **mesh),
+            [&] { return "collision: the mesh " + (*mesh)->source + " carries the cover of another"; });
+  }
   return data;
 }
 

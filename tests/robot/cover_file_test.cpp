@@ -282,5 +282,16 @@ TEST(SphereTreeCover, LeavesContainTheSolid) {
   }
 }
 
+TEST_F(CoverFile, AMeshChangedAfterwardsDoesNotPassWithItsOldCover) {
+  const Mesh mesh = mesh_of(with_covers(scene_of({box_mesh(0.3)}), folder_));
+  ASSERT_NE(mesh->cover, nullptr);
+  EXPECT_NO_THROW(CollisionShape{Shape(mesh)});
+  auto larger = std::make_shared<TriangleMesh>(*mesh);
+  larger->vertices *= 1.01;
+  EXPECT_THROW(CollisionShape{Shape(Mesh(larger))}, std::invalid_argument);
+  larger->cover = nullptr;
+  EXPECT_NO_THROW(CollisionShape{Shape(Mesh(larger))});
+}
+
 }  // namespace
 }  // namespace opponens::robot
