@@ -30,7 +30,7 @@ struct CollisionSettings {
 /// What checks took.
 struct CollisionCounts {
   std::int64_t configurations = 0;  ///< evaluated
-  std::int64_t pairs = 0;           ///< of shapes, that the first stage could not tell apart
+  std::int64_t pairs = 0;           ///< of shapes, that the truth was asked about, as nothing cheaper decided
 };
 
 /// The collision truth (design: "Collision truth"): FCL on the chosen geometry of every link pair that is not allowed

@@ -129,6 +129,26 @@ Shape meshed(const Shape& shape) {
 
 constexpr double kMargin = 2e-6;
 
+TEST(ConvexRelation, OverlappingStaysSoWhereverOneIsMovedByTheDepth) {
+  constexpr double kDepth = 1e-3;
+  Rng rng(5);
+  int overlapping = 0;
+  for (int i = 0; i < 5000; ++i) {
+    const Pair pair = random_pair(rng);
+    const CollisionShape a(pair.a);
+    const CollisionShape b(pair.b);
+    if (convex_relation(a, pair.X_WA, b, pair.X_WB, kMargin, kDepth) != Convex::overlapping) continue;
+    ++overlapping;
+    for (int k = 0; k < 5; ++k) {
+      const Eigen::Vector3d direction(rng.normal(), rng.normal(), rng.normal());
+      Eigen::Isometry3d X_WB = pair.X_WB;
+      X_WB.pretranslate(0.99 * kDepth * direction.normalized());
+      EXPECT_TRUE(intersect(a, pair.X_WA, b, X_WB)) << i;
+    }
+  }
+  EXPECT_GT(overlapping, 300);
+}
+
 TEST(ConvexApart, NeverWhereTheTwoMeetAndNearlyAlwaysBeyondAMillimetre) {
   // Null hypothesis: it misses one in a thousand of the pairs that are a millimetre apart. The bound is the binomial
   // distribution's upper quantile, false alarms 1e-4. The known-wrong rule, bounding spheres, must be rejected.

@@ -99,10 +99,11 @@ TEST(TwoStage, TheFirstStageDecidesNearlyEverything) {
   Rng rng(3);
   const Tally tally = experiments::compare_uniform(subject, 2000, rng);
   EXPECT_EQ(tally.different, 0) << tally.example;
-  // One pair is asked where a configuration collides; of all others hardly any.
+  // Of all pairs hardly any; where a configuration collides, a point in both parts mostly shows it without the truth.
   EXPECT_GT(pairs, 200U);
   EXPECT_LT(static_cast<double>(tally.pairs_asked), 0.01 * static_cast<double>(pairs) * 2000.0);
-  EXPECT_GE(tally.pairs_asked, tally.configurations - tally.free);
+  EXPECT_GT(tally.pairs_asked, 0);
+  EXPECT_LT(tally.pairs_asked, (tally.configurations - tally.free) / 10);
   const Tally contacts = experiments::compare_contacts(subject, 500, rng);
   EXPECT_GE(contacts.pairs_asked, contacts.configurations / 2);
 }
