@@ -119,7 +119,7 @@ Placement::Placement(const CollisionWorld& world, const Eigen::Isometry3d& X_WR,
                      const Eigen::Ref<const Eigen::VectorXd>& q)
     : world_(world),
       X_WR_(X_WR),
-      q_(q),
+      q_(q.data(), q.size()),
       X_RL_(std::make_unique_for_overwrite<Eigen::Isometry3d[]>(world.robot.links().size())),
       placed_(std::make_unique_for_overwrite<Placed[]>(world.parts.size())),
       link_known_(world.robot.links().size(), 0),

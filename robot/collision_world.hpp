@@ -76,7 +76,7 @@ class Placement {
 
   const CollisionWorld& world_;
   Eigen::Isometry3d X_WR_;
-  const Eigen::Ref<const Eigen::VectorXd>& q_;
+  Eigen::Map<const Eigen::VectorXd> q_;
   std::unique_ptr<Eigen::Isometry3d[]> X_RL_;  ///< [links], as placed_ uninitialised until known
   std::unique_ptr<Placed[]> placed_;           ///< [parts]
   std::vector<char> link_known_;
