@@ -94,12 +94,7 @@ struct CollisionChecker::World {
 
   bool exact_free(const Eigen::Isometry3d& X_WR, const Eigen::Ref<const Eigen::VectorXd>& q) const {
     Placement placement(exact, X_WR, q);
-    for (int i = 0; i < exact.robot_parts; ++i) {
-      for (const int j : exact.partners[static_cast<std::size_t>(i)]) {
-        if (placement.collide(i, j)) return false;
-      }
-    }
-    return true;
+    return !exact.any_pair([&](int a, int b) { return placement.collide(a, b); });
   }
 
   /// Whether none of the pairs collides.
@@ -122,10 +117,11 @@ struct CollisionChecker::World {
     for (const wide::Unknown& pair : unknown) {
       if (!concerns(pair)) continue;
       // Separating axes tell all of two boxes, and cheaply; primitives are their own hulls.
-      if (!exact.are_boxes(pair.a, pair.b)) {
+      if (!exact.is_box(pair.a) || !exact.is_box(pair.b)) {
         const Convex hulls = placement.hulls(pair.a, pair.b);
         if (hulls == Convex::apart) continue;
-        if (hulls == Convex::overlapping && !exact.involves_mesh(pair.a, pair.b)) return false;
+        const bool primitives = !exact.is_mesh(pair.a) && !exact.is_mesh(pair.b);
+        if (hulls == Convex::overlapping && primitives) return false;
       }
       if (placement.share_a_point(pair.a, pair.b)) return false;
       ++asked;
@@ -267,11 +263,10 @@ std::vector<BodyPair> CollisionChecker::colliding_pairs(const Eigen::Isometry3d&
   const CollisionWorld& exact = world_->exact;
   Placement placement(exact, X_WR, q);
   std::set<BodyPair> pairs;
-  for (int i = 0; i < exact.robot_parts; ++i) {
-    for (const int j : exact.partners[static_cast<std::size_t>(i)]) {
-      if (placement.collide(i, j)) pairs.insert(exact.names_of(i, j));
-    }
-  }
+  exact.any_pair([&](int a, int b) {
+    if (placement.collide(a, b)) pairs.insert(exact.names_of(a, b));
+    return false;
+  });
   return {pairs.begin(), pairs.end()};
 }
 
@@ -286,11 +281,10 @@ CollisionChecker::Clearance CollisionChecker::clearance(const Eigen::Ref<const E
   Placement placement(exact, exact.X_WR, q);
   // Nearest bounds first, so that few exact distances are needed. Equal bounds stay in the order of the pairs.
   std::vector<Candidate> candidates;
-  for (int i = 0; i < exact.robot_parts; ++i) {
-    for (const int j : exact.partners[static_cast<std::size_t>(i)]) {
-      candidates.push_back({placement.distance_bound(i, j), i, j});
-    }
-  }
+  exact.any_pair([&](int a, int b) {
+    candidates.push_back({placement.distance_bound(a, b), a, b});
+    return false;
+  });
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& x, const Candidate& y) { return x.bound < y.bound; });
   Clearance result{std::numeric_limits<double>::infinity(), {}};

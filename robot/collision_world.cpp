@@ -89,21 +89,6 @@ CollisionWorld::CollisionWorld(const RobotModel& model, const Scene& scene, cons
   }
 }
 
-bool CollisionWorld::involves_mesh(int a, int b) const {
-  const auto is_mesh = [&](int part) {
-    const Shape& shape = parts[static_cast<std::size_t>(part)].shape.shape();
-    return std::holds_alternative<std::shared_ptr<const TriangleMesh>>(shape);
-  };
-  return is_mesh(a) || is_mesh(b);
-}
-
-bool CollisionWorld::are_boxes(int a, int b) const {
-  const auto is_box = [&](int part) {
-    return std::holds_alternative<Box>(parts[static_cast<std::size_t>(part)].shape.shape());
-  };
-  return is_box(a) && is_box(b);
-}
-
 const std::string& CollisionWorld::name_of(int part) const {
   const auto body = static_cast<std::size_t>(parts[static_cast<std::size_t>(part)].body);
   return of_scene(part) ? body_names[body] : robot.links()[body].name;
@@ -151,8 +136,8 @@ const Placement::Placed& Placement::at(int part) {
 
 /// Bounding volumes, cheapest first: spheres, sphere and box, boxes.
 bool Placement::collide(int a, int b) {
-  const CollisionShape& A = world_.parts[static_cast<std::size_t>(a)].shape;
-  const CollisionShape& B = world_.parts[static_cast<std::size_t>(b)].shape;
+  const CollisionShape& A = world_.shape(a);
+  const CollisionShape& B = world_.shape(b);
   const Placed& at_a = at(a);
   const Placed& at_b = at(b);
   const double reach = A.radius() + B.radius() + kCullMargin;
@@ -164,15 +149,15 @@ bool Placement::collide(int a, int b) {
 }
 
 Convex Placement::hulls(int a, int b) {
-  const CollisionShape& A = world_.parts[static_cast<std::size_t>(a)].shape;
-  const CollisionShape& B = world_.parts[static_cast<std::size_t>(b)].shape;
+  const CollisionShape& A = world_.shape(a);
+  const CollisionShape& B = world_.shape(b);
   return convex_relation(A, at(a).X_WG, B, at(b).X_WG, kCullMargin, kWitnessDepth);
 }
 
 /// Vertices of the hull are points of the mesh, known to a rounding that has to be far below kWitnessDepth.
 bool Placement::holds_a_vertex(int primitive, int mesh) {
-  const CollisionShape& hull_of = world_.parts[static_cast<std::size_t>(mesh)].shape;
-  const Shape& shape = world_.parts[static_cast<std::size_t>(primitive)].shape.shape();
+  const CollisionShape& hull_of = world_.shape(mesh);
+  const Shape& shape = world_.shape(primitive).shape();
   const HullVertices& hull = hull_of.hull();
   if (hull.rounding > 0.5 * kWitnessDepth) return false;  // of a mesh that reaches further than some metres
   const Eigen::Isometry3d X_PM = at(primitive).X_WG.inverse(Eigen::Isometry) * at(mesh).X_WG;
@@ -183,24 +168,17 @@ bool Placement::holds_a_vertex(int primitive, int mesh) {
 }
 
 bool Placement::share_a_point(int a, int b) {
-  const auto shape = [&](int part) -> const Shape& {
-    return world_.parts[static_cast<std::size_t>(part)].shape.shape();
-  };
-  const auto is_mesh = [&](int part) {
-    return std::holds_alternative<std::shared_ptr<const TriangleMesh>>(shape(part));
-  };
-  if (is_mesh(a) != is_mesh(b)) return is_mesh(a) ? holds_a_vertex(b, a) : holds_a_vertex(a, b);
-  return world_.are_boxes(a, b) && boxes_overlap(at(a).box, at(b).box);
+  if (world_.is_mesh(a) != world_.is_mesh(b)) return world_.is_mesh(a) ? holds_a_vertex(b, a) : holds_a_vertex(a, b);
+  return world_.is_box(a) && world_.is_box(b) && boxes_overlap(at(a).box, at(b).box);
 }
 
 double Placement::separation(int a, int b) {
-  return robot::separation(world_.parts[static_cast<std::size_t>(a)].shape, at(a).X_WG,
-                           world_.parts[static_cast<std::size_t>(b)].shape, at(b).X_WG);
+  return robot::separation(world_.shape(a), at(a).X_WG, world_.shape(b), at(b).X_WG);
 }
 
 double Placement::distance_bound(int a, int b) {
-  const double radius_a = world_.parts[static_cast<std::size_t>(a)].shape.radius();
-  const double radius_b = world_.parts[static_cast<std::size_t>(b)].shape.radius();
+  const double radius_a = world_.shape(a).radius();
+  const double radius_b = world_.shape(b).radius();
   const OrientedBox& box_a = at(a).box;
   const OrientedBox& box_b = at(b).box;
   return std::max({(box_a.center - box_b.center).norm() - radius_a - radius_b,

@@ -38,8 +38,23 @@ struct CollisionWorld {
   CollisionWorld(const RobotModel& model, const Scene& scene, const std::vector<BodyPair>& touching);
 
   bool of_scene(int part) const { return part >= robot_parts; }
-  bool involves_mesh(int a, int b) const;
-  bool are_boxes(int a, int b) const;
+  const CollisionShape& shape(int part) const { return parts[static_cast<std::size_t>(part)].shape; }
+  bool is_mesh(int part) const {
+    return std::holds_alternative<std::shared_ptr<const TriangleMesh>>(shape(part).shape());
+  }
+  bool is_box(int part) const { return std::holds_alternative<Box>(shape(part).shape()); }
+
+  /// Calls visit(a, b) for the pairs to check until it returns true; whether it did.
+  template <typename Visit>
+  bool any_pair(const Visit& visit) const {
+    for (int i = 0; i < robot_parts; ++i) {
+      for (const int j : partners[static_cast<std::size_t>(i)]) {
+        if (visit(i, j)) return true;
+      }
+    }
+    return false;
+  }
+
   const std::string& name_of(int part) const;
   /// Names of the bodies of two parts: a scene body last, two links in alphabetical order.
   BodyPair names_of(int a, int b) const;
