@@ -47,7 +47,8 @@ Eigen::Quaterniond ros_quaternion(const YamlValue& value) {
   Eigen::Vector4d xyzw;
   if (value.is_map()) {
     value.allow_keys({"x", "y", "z", "w"});
-    xyzw << value.at("x").number(), value.at("y").number(), value.at("z").number(), value.at("w").number();
+    xyzw = Eigen::Vector4d(value.at("x").number(), value.at("y").number(), value.at("z").number(),
+                           value.at("w").number());
   } else {
     xyzw = value.numbers(4);
   }
