@@ -20,21 +20,24 @@ namespace {
 
 constexpr double kTouching = 1e-5;  ///< m; nearer pairs may collide in one pose and not in another, by rounding
 
-/// A pose as the sweep takes it.
-std::array<float, 12> wide_pose(const Eigen::Isometry3d& X) {
-  std::array<float, 12> pose;
+/// A pose as the sweep takes it: rotation row-major, translation.
+std::array<double, 12> rows_of(const Eigen::Isometry3d& X) {
+  std::array<double, 12> pose;
   for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) pose[static_cast<std::size_t>(3 * i + j)] = static_cast<float>(X.linear()(i, j));
-    pose[static_cast<std::size_t>(9 + i)] = static_cast<float>(X.translation()[i]);
+    for (int j = 0; j < 3; ++j) pose[static_cast<std::size_t>(3 * i + j)] = X.linear()(i, j);
+    pose[static_cast<std::size_t>(9 + i)] = X.translation()[i];
   }
   return pose;
 }
 
+constexpr std::array<double, 12> kUsualRoot{1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};
+
 /// Rows [first, first + count) of a batch. Idle lanes repeat the last, and lanes that the sweep does not hold for rest
 /// at zero: a number that is not finite would spoil the boxes around all lanes.
 wide::Query wide_query(const wide::World& world, const ConfigurationBatch& batch, int first, int count,
-                       const std::array<float, 12>& root, const Eigen::VectorXd& zero) {
-  wide::Query query{{}, 0, root.data()};
+                       const Eigen::VectorXd& zero) {
+  static constexpr std::array<float, 12> kUsual{1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};
+  wide::Query query{{}, 0, kUsual.data()};
   for (int lane = 0; lane < count; ++lane) {
     const double* const q = batch.row(first + lane).data();
     const bool held = world.holds(q, static_cast<int>(batch.cols()));
@@ -63,7 +66,8 @@ struct CollisionChecker::World {
         fixed(exact, true),
         portable(settings.portable),
         zero(Eigen::VectorXd::Zero(robot.dof())) {
-    Placement placement(exact, exact.X_WR, zero);
+    Placement::Memory memory;
+    Placement placement(exact, exact.X_WR, zero, memory);
     // The truth is asked each time about those that are not apart for certain: of faces that just touch, rounding
     // decides it, and rounding differs from pose to pose.
     for (const auto& [a, b] : fixed.constant_pairs()) {
@@ -88,12 +92,13 @@ struct CollisionChecker::World {
   }
 
   void require_batch(const ConfigurationBatch& batch) const {
-    require(batch.cols() == exact.robot.dof() && batch.allFinite(),
+    // Nothing but finite numbers is zero times zero; Eigen's allFinite asks them one by one.
+    require(batch.cols() == exact.robot.dof() && (batch.array() * 0.0).sum() == 0.0,
             "CollisionChecker: a batch needs one finite number for each joint");
   }
 
   bool exact_free(const Eigen::Isometry3d& X_WR, const Eigen::Ref<const Eigen::VectorXd>& q) const {
-    Placement placement(exact, X_WR, q);
+    Placement placement(exact, X_WR, q, own_memory());
     return !exact.any_pair([&](int a, int b) { return placement.collide(a, b); });
   }
 
@@ -101,7 +106,7 @@ struct CollisionChecker::World {
   bool apart(const std::vector<std::pair<int, int>>& pairs, const Eigen::Isometry3d& X_WR,
              const Eigen::Ref<const Eigen::VectorXd>& q) const {
     if (pairs.empty()) return true;
-    Placement placement(exact, X_WR, q);
+    Placement placement(exact, X_WR, q, own_memory());
     return std::none_of(pairs.begin(), pairs.end(),
                         [&](const auto& pair) { return placement.collide(pair.first, pair.second); });
   }
@@ -113,7 +118,7 @@ struct CollisionChecker::World {
     const auto touches = [lane](const wide::Unknown& pair) { return (pair.touching >> lane & 1U) != 0; };
     if (std::none_of(unknown.begin(), unknown.end(), concerns)) return true;
     if (std::any_of(unknown.begin(), unknown.end(), touches)) return false;
-    Placement placement(exact, X_WR, q);
+    Placement placement(exact, X_WR, q, own_memory());
     for (const wide::Unknown& pair : unknown) {
       if (!concerns(pair)) continue;
       // Separating axes tell all of two boxes, and cheaply; primitives are their own hulls.
@@ -137,12 +142,38 @@ struct CollisionChecker::World {
   };
   /// Valid until the thread asks again. first_only: rows after one that collides do not matter.
   FirstStage first_stage(const ConfigurationBatch& batch, int first, int count, bool first_only = false) const {
-    static const std::array<float, 12> kUsual = wide_pose(Eigen::Isometry3d::Identity());
-    thread_local wide::World::Buffers buffers;
-    wide::Query query = wide_query(fixed, batch, first, count, kUsual, zero);
+    if (count == 1) return first_stage(fixed, kUsualRoot.data(), batch.row(first).data());
+    wide::World::Buffers& buffers = own_buffers();
+    wide::Query query = wide_query(fixed, batch, first, count, zero);
     query.first_only = first_only;
     const int pairs = fixed.sweep(query, buffers, portable);
     return {{buffers.found.data(), static_cast<std::size_t>(pairs)}, query.lanes};
+  }
+
+  /// The same for one configuration, of the robot with its root there.
+  FirstStage first_stage(const wide::World& world, const double* root, const double* q) const {
+    if (!world.holds(q, exact.robot.dof())) return {{}, 0};
+    wide::World::Buffers& buffers = own_buffers();
+    const int pairs = world.sweep(wide::SingleQuery{q, root}, buffers, portable);
+    return {{buffers.found.data(), static_cast<std::size_t>(pairs)}, 1U};
+  }
+
+  static Placement::Memory& own_memory() {
+    thread_local Placement::Memory memory;
+    return memory;
+  }
+  static wide::World::Buffers& own_buffers() {
+    thread_local wide::World::Buffers buffers;
+    return buffers;
+  }
+
+  /// One configuration in both stages. fixed_pairs: those to check in which nothing moves.
+  bool free(const wide::World& world, const double* root, const std::vector<std::pair<int, int>>& fixed_pairs,
+            const Eigen::Isometry3d& X_WR, const Eigen::Ref<const Eigen::VectorXd>& q) const {
+    const FirstStage stage = first_stage(world, root, q.data());
+    if (stage.lanes == 0) return exact_free(X_WR, q);
+    std::int64_t asked = 0;
+    return apart(fixed_pairs, X_WR, q) && settle(stage.unknown, 0, X_WR, q, asked);
   }
 
   /// Asks for such rows at once. Calls verdict(row, free) for each in turn until it returns true.
@@ -188,26 +219,15 @@ CollisionChecker& CollisionChecker::operator=(CollisionChecker&&) noexcept = def
 
 bool CollisionChecker::free(const Eigen::Ref<const Eigen::VectorXd>& q) const {
   world_->require_configuration(q);
-  bool free = false;
-  CollisionCounts counts;
-  world_->sweep_rows(
-      q.transpose(), 0, 1, [&](int, bool verdict) { return free = verdict; }, counts);
-  return free;
+  return world_->free(world_->fixed, kUsualRoot.data(), world_->constant, world_->exact.X_WR, q);
 }
 
 bool CollisionChecker::free(const Eigen::Isometry3d& X_WR, const Eigen::Ref<const Eigen::VectorXd>& q) const {
   const World& w = *world_;
   w.require_configuration(q);
   const Eigen::Isometry3d X_SR = w.exact.X_WR.inverse() * X_WR;
-  const std::array<float, 12> root = wide_pose(X_SR);
-  const ConfigurationBatch row = q.transpose();
-  const wide::Query query = wide_query(w.flying(), row, 0, 1, root, w.zero);
-  if (query.lanes == 0 || !w.flying().reaches(X_SR)) return w.exact_free(X_WR, q);
-  thread_local wide::World::Buffers buffers;
-  const int pairs = w.flying().sweep(query, buffers, w.portable);
-  const std::span<const wide::Unknown> unknown(buffers.found.data(), static_cast<std::size_t>(pairs));
-  std::int64_t asked = 0;
-  return w.apart(w.constant_self, X_WR, q) && w.settle(unknown, 0, X_WR, q, asked);
+  if (!w.flying().reaches(X_SR)) return w.exact_free(X_WR, q);
+  return w.free(w.flying(), rows_of(X_SR).data(), w.constant_self, X_WR, q);
 }
 
 std::vector<bool> CollisionChecker::free_rows(const ConfigurationBatch& batch, CollisionCounts* counts) const {
@@ -261,7 +281,8 @@ std::vector<BodyPair> CollisionChecker::colliding_pairs(const Eigen::Isometry3d&
                                                         const Eigen::Ref<const Eigen::VectorXd>& q) const {
   world_->require_configuration(q);
   const CollisionWorld& exact = world_->exact;
-  Placement placement(exact, X_WR, q);
+  Placement::Memory memory;
+  Placement placement(exact, X_WR, q, memory);
   std::set<BodyPair> pairs;
   exact.any_pair([&](int a, int b) {
     if (placement.collide(a, b)) pairs.insert(exact.names_of(a, b));
@@ -278,7 +299,8 @@ CollisionChecker::Clearance CollisionChecker::clearance(const Eigen::Ref<const E
     int b;
   };
   const CollisionWorld& exact = world_->exact;
-  Placement placement(exact, exact.X_WR, q);
+  Placement::Memory memory;
+  Placement placement(exact, exact.X_WR, q, memory);
   // Nearest bounds first, so that few exact distances are needed. Equal bounds stay in the order of the pairs.
   std::vector<Candidate> candidates;
   exact.any_pair([&](int a, int b) {

@@ -101,37 +101,41 @@ BodyPair CollisionWorld::names_of(int a, int b) const {
 }
 
 Placement::Placement(const CollisionWorld& world, const Eigen::Isometry3d& X_WR,
-                     const Eigen::Ref<const Eigen::VectorXd>& q)
-    : world_(world),
-      X_WR_(X_WR),
-      q_(q.data(), q.size()),
-      X_RL_(std::make_unique_for_overwrite<Eigen::Isometry3d[]>(world.robot.links().size())),
-      placed_(std::make_unique_for_overwrite<Placed[]>(world.parts.size())),
-      link_known_(world.robot.links().size(), 0),
-      part_known_(world.parts.size(), 0) {
-  X_RL_[0].setIdentity();
-  link_known_[0] = 1;
+                     const Eigen::Ref<const Eigen::VectorXd>& q, Memory& memory)
+    : world_(world), X_WR_(X_WR), q_(q.data(), q.size()), memory_(memory) {
+  const auto at_least = [](auto& list, std::size_t size) {
+    if (list.size() < size) list.resize(size);
+  };
+  at_least(memory.X_RL_, world.robot.links().size());
+  at_least(memory.link_known_, world.robot.links().size());
+  at_least(memory.placed_, world.parts.size());
+  at_least(memory.part_known_, world.parts.size());
+  ++memory.number_;
+  memory.X_RL_[0].setIdentity();
+  memory.link_known_[0] = memory.number_;
 }
 
 const Eigen::Isometry3d& Placement::link(int index) {
   const auto i = static_cast<std::size_t>(index);
-  if (link_known_[i] == 0) {
+  Eigen::Isometry3d& X_RL = memory_.X_RL_[i];
+  if (memory_.link_known_[i] != memory_.number_) {
     const auto joint = static_cast<std::size_t>(world_.robot.links()[i].joint);
     const Eigen::Isometry3d& X_RP = link(world_.robot.description().joints[joint].parent);
-    world_.robot.place_child(joint, q_, X_RP, X_RL_[i]);
-    link_known_[i] = 1;
+    world_.robot.place_child(joint, q_, X_RP, X_RL);
+    memory_.link_known_[i] = memory_.number_;
   }
-  return X_RL_[i];
+  return X_RL;
 }
 
 const Placement::Placed& Placement::at(int part) {
   const auto i = static_cast<std::size_t>(part);
-  if (part_known_[i] == 0) {
+  Placed& placed = memory_.placed_[i];
+  if (memory_.part_known_[i] != memory_.number_) {
     const CollisionPart& own = world_.parts[i];
-    placed_[i] = place(own.shape, world_.of_scene(part) ? own.X_BG : X_WR_ * link(own.body) * own.X_BG);
-    part_known_[i] = 1;
+    placed = place(own.shape, world_.of_scene(part) ? own.X_BG : X_WR_ * link(own.body) * own.X_BG);
+    memory_.part_known_[i] = memory_.number_;
   }
-  return placed_[i];
+  return placed;
 }
 
 /// Bounding volumes, cheapest first: spheres, sphere and box, boxes.

@@ -3,7 +3,7 @@
 // Internal to robot/: the shapes of a robot and its scene, the pairs of them to check, and the exact check of one pair.
 #pragma once
 
-#include <memory>
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -69,8 +69,20 @@ class Placement {
     OrientedBox box;
   };
 
+  /// Room for one Placement at a time, to be used again and again.
+  class Memory {
+    friend class Placement;
+    std::vector<Eigen::Isometry3d> X_RL_;  ///< [links]
+    std::vector<Placed> placed_;           ///< [parts]
+    // What is known of the present placement bears its number.
+    std::vector<std::uint64_t> link_known_;
+    std::vector<std::uint64_t> part_known_;
+    std::uint64_t number_ = 0;
+  };
+
   /// All are referred to and must outlive this. q: [d] rad, finite.
-  Placement(const CollisionWorld& world, const Eigen::Isometry3d& X_WR, const Eigen::Ref<const Eigen::VectorXd>& q);
+  Placement(const CollisionWorld& world, const Eigen::Isometry3d& X_WR, const Eigen::Ref<const Eigen::VectorXd>& q,
+            Memory& memory);
 
   const Placed& at(int part);
 
@@ -92,10 +104,7 @@ class Placement {
   const CollisionWorld& world_;
   Eigen::Isometry3d X_WR_;
   Eigen::Map<const Eigen::VectorXd> q_;
-  std::unique_ptr<Eigen::Isometry3d[]> X_RL_;  ///< [links], as placed_ uninitialised until known
-  std::unique_ptr<Placed[]> placed_;           ///< [parts]
-  std::vector<char> link_known_;
-  std::vector<char> part_known_;
+  Memory& memory_;
 };
 
 }  // namespace opponens::robot

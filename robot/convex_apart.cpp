@@ -7,6 +7,7 @@
 
 #include "robot/bounding_volume_tree.hpp"
 #include "robot/convex_hull.hpp"
+#include "robot/grown_polytope.hpp"
 #include "robot/wide_world.hpp"
 
 namespace opponens::robot {
@@ -98,19 +99,6 @@ Vector3d nearest(Simplex& simplex) {
   return simplex.size == 3 ? nearest_of_triangle(simplex) : nearest_of_tetrahedron(simplex);
 }
 
-/// Whether a tetrahedron holds a ball about the origin.
-bool holds_ball(const Simplex& simplex, double radius) {
-  if (simplex.size != 4) return false;
-  for (std::size_t k = 0; k < 4; ++k) {
-    const Vector3d& a = simplex.corner[(k + 1) % 4];
-    const Vector3d n = (simplex.corner[(k + 2) % 4] - a).cross(simplex.corner[(k + 3) % 4] - a);
-    const double across = n.dot(simplex.corner[k] - a);
-    const double inwards = across > 0.0 ? -n.dot(a) : n.dot(a);
-    if (!(inwards > radius * n.norm())) return false;
-  }
-  return true;
-}
-
 }  // namespace
 
 bool convex_apart(const CollisionShape& a, const Eigen::Isometry3d& X_WA, const CollisionShape& b,
@@ -123,16 +111,20 @@ Convex convex_relation(const CollisionShape& a, const Eigen::Isometry3d& X_WA, c
   const Eigen::Isometry3d X_AB = X_WA.inverse(Eigen::Isometry) * X_WB;
   const double rounding = a.hull_rounding() + b.hull_rounding();
   margin += rounding;
-  Vector3d v = a.center() - X_AB * b.center();  // of the difference A - B
+  const auto support = [&](const Vector3d& n) -> Vector3d {  // of the difference A - B
+    const Vector3d turned = -(X_AB.linear().transpose() * n);
+    return std::visit(Support{a, n}, a.shape()) - X_AB * std::visit(Support{b, turned}, b.shape());
+  };
+  Vector3d v = a.center() - X_AB * b.center();
   Simplex simplex;
   for (int step = 0; step < kSteps; ++step) {
     const double length = v.norm();
     if (!(length > margin)) {
-      return holds_ball(simplex, depth + rounding) ? Convex::overlapping : Convex::unknown;
+      const bool inside = simplex.size == 4 && depth > 0.0;
+      return inside && comes_to_hold_ball(simplex.corner, depth + rounding, support) ? Convex::overlapping
+                                                                                     : Convex::unknown;
     }
-    const Vector3d down = -v;
-    const Vector3d turned = X_AB.linear().transpose() * v;
-    const Vector3d w = std::visit(Support{a, down}, a.shape()) - X_AB * std::visit(Support{b, turned}, b.shape());
+    const Vector3d w = support(-v);
     const double ahead = v.dot(w);
     if (ahead > margin * length) return Convex::apart;
     // No support point is nearer than those known: v is the nearest point itself, less than margin away.

@@ -16,8 +16,8 @@ bool convex_apart(const CollisionShape& a, const Eigen::Isometry3d& X_WA, const 
 
 enum class Convex { apart, overlapping, unknown };
 
-/// The same, and whether the hulls overlap for certain: the steps ended in a tetrahedron of points of the difference
-/// that holds a ball of radius `depth` (m) about the origin.
+/// The same, and with depth > 0 whether the hulls overlap for certain: a polytope of points of the difference came to
+/// hold a ball of radius `depth` (m) about the origin.
 Convex convex_relation(const CollisionShape& a, const Eigen::Isometry3d& X_WA, const CollisionShape& b,
                        const Eigen::Isometry3d& X_WB, double margin, double depth);
 

@@ -48,6 +48,43 @@ struct Node {
   int children;
 };
 
+/// A frame for one configuration, in double precision, every number four times: what the columns of the parent's pose
+/// are multiplied with.
+struct alignas(32) SpreadFrame {
+  double column[3][3][4];  ///< of the rotation
+  double translation[3][4];
+};
+
+/// A part for one configuration: what the columns of its frame's pose are multiplied with for two vectors at a time,
+/// each number four times.
+struct alignas(4 * kLanes) SpreadPart {
+  float box[2][3][kLanes];  ///< [place of two, column] for center and first axis, and for second and third axis
+  float rest[2][kLanes];    ///< the fourth places of these vectors (PlacedPart)
+  float ball_center[3][4];
+  int frame;
+};
+
+/// A part's box in the root frame: center, axes, and in the fourth places its half extents, enlarged by the margin for
+/// one configuration, and its form.
+struct alignas(32) PlacedPart {
+  float center[4];
+  float axis[3][4];
+};
+
+/// Up to kLanes partners of a part, in a row of the robot's parts or of the scene's: which of them to check, and for
+/// balls how near their centers may come.
+struct alignas(4 * kLanes) PartnerRow {
+  float squared_reach[kLanes];  ///< m^2, of the sum of the radii; of the part alone where the partners are of the scene
+  unsigned wanted;              ///< as bits
+  int row;
+};
+
+/// How many rows of partners a part or a group has: first of the robot, then of the scene.
+struct RowRange {
+  int of_robot;
+  int of_scene;
+};
+
 /// Parts of one frame that lie close together, in one ball.
 struct Group {
   int frame;
@@ -69,6 +106,13 @@ struct GroupPair {
   int end;
 };
 
+/// Up to kLanes partners of a group, in a row of the robot's groups or of the scene's parts: which of them to check.
+struct GroupRow {
+  unsigned wanted;  ///< as bits
+  int row;
+  int pairs;  ///< first of kLanes pairs
+};
+
 /// A box of the scene, each number repeated for all lanes: center, half extents, and the axes by columns.
 struct alignas(4 * kLanes) SceneBox {
   float center[3][kLanes];
@@ -85,10 +129,13 @@ struct alignas(4 * kLanes) BoxRow {
 
 /// Views of arrays; the sweep allocates nothing and calls nothing that is compiled elsewhere.
 struct Model {
-  float margin;  ///< m, by which sizes are enlarged; above the error of a point's place
+  float margin;         ///< m, by which sizes are enlarged; above the error of a point's place
+  float single_margin;  ///< m, the same for one configuration
   const Frame* frames;
+  const SpreadFrame* spread_frames;
   int frame_count;
   const Part* parts;  ///< of the robot, then of the scene
+  const SpreadPart* spread_parts;
   int robot_part_count;
   int part_count;
   const Node* nodes;
@@ -98,9 +145,15 @@ struct Model {
   const SceneBox* scene_boxes;  ///< [parts of the scene]
   const BoxRow* scene_rows;     ///< around them
   int scene_row_count;
-  const unsigned char* wanted;  ///< [groups x (group_rows + scene rows)] bits of the partners to check in each row
-  const GroupPair* pairs;       ///< [groups x (group_rows + scene rows) x kLanes]
+  const RowRange* group_ranges;  ///< [groups]
+  const GroupRow* group_partners;
+  const GroupPair* pairs;
   const PartPair* part_pairs;
+  // For one configuration, whose partners are asked in rows: first of the robot's parts, then of the scene's.
+  const PlacedPart* scene_parts;
+  int part_rows;                   ///< rows of kLanes parts of the robot
+  const RowRange* partner_ranges;  ///< [robot parts]
+  const PartnerRow* partners;
 };
 
 /// A pair that the sweep could not tell apart in some lanes.
@@ -118,7 +171,12 @@ struct Query {
   bool first_only = false;  ///< lanes after one that touches do not matter
 };
 
-/// Floats of memory that the sweep needs, to be aligned to 64 bytes.
+struct SingleQuery {
+  const double* q;     ///< [d]
+  const double* root;  ///< as of Query, [12]
+};
+
+/// Floats of memory that either sweep needs, to be aligned to 64 bytes.
 int workspace_size(const Model& model);
 
 /// Writes at most one Unknown for each pair into found and returns how many. A lane found to touch is not pursued
@@ -127,6 +185,11 @@ int workspace_size(const Model& model);
 /// boxes. Portable; sweep_avx2 is the same for a processor with AVX2 and FMA.
 int sweep(const Model& model, const Query& query, float* workspace, Unknown* found);
 int sweep_avx2(const Model& model, const Query& query, float* workspace, Unknown* found);
+
+/// The same for one configuration (lane 0), with a smaller margin as kinematics are in double precision. Stops at the
+/// first pair that touches, which is then the last that it writes.
+int sweep_single(const Model& model, const SingleQuery& query, float* workspace, Unknown* found);
+int sweep_single_avx2(const Model& model, const SingleQuery& query, float* workspace, Unknown* found);
 
 /// Index of the point farthest along n of a padded list, [3 x count]: one coordinate after the other.
 int farthest_portable(const float* xyz, int count, const float* n);

@@ -14,40 +14,13 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-constexpr double kMargin = 2e-5;            ///< of the largest coordinate
-constexpr int kChain = 20;                  ///< moving joints in a row that this is enough for
-constexpr double kFarthest = 1e6;           ///< m; beyond it squares of lengths come near what a float can hold
-constexpr double kSlideSlack = 0.01;        ///< m, of sliding joints beyond their limits
-constexpr double kGroupGrowth = 1.4;        ///< of the larger ball's radius, when two parts share one
-constexpr float kRadiusRounding = 1.0e-6F;  ///< share by which a radius grows when it becomes a float
-constexpr std::size_t kAlignment = 64;      ///< bytes
-
-void store_rotation(const Eigen::Matrix3d& R, float* to) {
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) to[3 * i + j] = static_cast<float>(R(i, j));
-  }
-}
-void store(const Vector3d& v, float* to) {
-  for (int i = 0; i < 3; ++i) to[i] = static_cast<float>(v[i]);
-}
+constexpr double kMargin = 2e-5;        ///< of the largest coordinate
+constexpr int kChain = 20;              ///< moving joints in a row that this is enough for
+constexpr double kFarthest = 1e6;       ///< m; beyond it squares of lengths come near what a float can hold
+constexpr double kGroupGrowth = 1.4;    ///< of the larger ball's radius, when two parts share one
+constexpr std::size_t kAlignment = 64;  ///< bytes
 
 float enlarged(double length, double margin) { return static_cast<float>(length + margin) * (1.0F + kRadiusRounding); }
-
-/// A rotation that turns the z axis into the given one: orthonormal to rounding for every axis, as the quaternion from
-/// two vectors is not when they are nearly opposite (by 5e-5 for an axis 1e-6 off -z).
-Eigen::Matrix3d z_onto(const Vector3d& axis) {
-  Eigen::Matrix3d R;
-  R.col(2) = axis.normalized();
-  R.col(0) = R.col(2).unitOrthogonal();
-  R.col(1) = R.col(2).cross(R.col(0));
-  return R;
-}
-
-Isometry3d turned(const Eigen::Matrix3d& R) {
-  Isometry3d X = Isometry3d::Identity();
-  X.linear() = R;
-  return X;
-}
 
 Form form_of(const CollisionShape& shape) {
   if (std::holds_alternative<Box>(shape.shape())) return Form::box;
@@ -80,6 +53,17 @@ struct Ball {
     radius = joined;
   }
 };
+
+PlacedPart placed(const CollisionShape& shape, const Isometry3d& X, double margin) {
+  PlacedPart part;
+  store(X * shape.center(), part.center);
+  for (int k = 0; k < 3; ++k) store(X.linear().col(k), part.axis[k]);
+  part.center[3] = enlarged(shape.half_extents()[0], margin);
+  part.axis[0][3] = enlarged(shape.half_extents()[1], margin);
+  part.axis[1][3] = enlarged(shape.half_extents()[2], margin);
+  part.axis[2][3] = static_cast<float>(form_of(shape));
+  return part;
+}
 
 double largest_coordinate(const CollisionPart& part, const Isometry3d& X) {
   return (X * part.X_BG * part.shape.center()).norm() + part.shape.half_extents().norm();
@@ -126,56 +110,6 @@ World::World(const CollisionWorld& world, bool fixed_root) : robot_parts_(world.
   add_checks(world, fixed_root);
 }
 
-/// Links joined by joints that do not move share a frame. A joint's frame has its axis as z.
-void World::add_frames(const RobotModel& robot) {
-  const Frame still{kWorld, Motion::none, -1, 1.0, 0.0, {1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
-  frames_ = {still, still};
-  reach_ = {{Vector3d::Zero(), 0.0}, {Vector3d::Zero(), 0.0}};
-  depth_ = {0, 0};
-  frame_of_link_ = {kRoot};
-  X_FL_ = {Isometry3d::Identity()};
-  const std::vector<Joint>& joints = robot.description().joints;
-  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(robot.dof());
-  for (std::size_t i = 0; i < joints.size(); ++i) {
-    const Joint& joint = joints[i];
-    const RobotModel::Drive& drive = robot.drives()[i];
-    const auto parent_link = static_cast<std::size_t>(joint.parent);
-    const int parent = frame_of_link_[parent_link];
-    if (joint.type == JointType::fixed || drive.index < 0) {
-      Isometry3d X_FC;
-      robot.place_child(i, zero, X_FL_[parent_link], X_FC);
-      frame_of_link_.push_back(parent);
-      X_FL_.push_back(X_FC);
-      continue;
-    }
-    const Eigen::Matrix3d Q = z_onto(joint.axis);
-    const Isometry3d X_PF = X_FL_[parent_link] * joint.X_PJ * turned(Q);
-    Frame frame = still;
-    frame.parent = parent;
-    frame.motion = joint.type == JointType::revolute ? Motion::turn : Motion::slide;
-    frame.joint = drive.index;
-    frame.multiplier = drive.multiplier;
-    frame.offset = drive.offset;
-    store_rotation(X_PF.linear(), frame.rotation);
-    store(X_PF.translation(), frame.translation);
-    const Reach before = reach_[static_cast<std::size_t>(parent)];
-    Reach reach = parent == kRoot ? Reach{X_PF.translation(), 0.0}
-                                  : Reach{before.center, before.radius + X_PF.translation().norm()};
-    if (frame.motion == Motion::slide) {
-      const Slide slide{frame.joint, robot.lower()[frame.joint] - kSlideSlack,
-                        robot.upper()[frame.joint] + kSlideSlack};
-      slides_.push_back(slide);
-      reach.radius += std::max(std::abs(frame.multiplier * slide.lower + frame.offset),
-                               std::abs(frame.multiplier * slide.upper + frame.offset));
-    }
-    reach_.push_back(reach);
-    depth_.push_back(depth_[static_cast<std::size_t>(parent)] + 1);
-    frame_of_link_.push_back(static_cast<int>(frames_.size()));
-    X_FL_.push_back(turned(Q.transpose()));
-    frames_.push_back(frame);
-  }
-}
-
 void World::add_parts(const CollisionWorld& world) {
   const Isometry3d X_RW = world.X_WR.inverse();
   for (std::size_t i = 0; i < world.parts.size(); ++i) {
@@ -194,7 +128,29 @@ void World::add_parts(const CollisionWorld& world) {
     part.form = form_of(source.shape);
     part.root = part.form == Form::other ? add_tree(source.shape.cover(), X_FG) : -1;
     parts_.push_back(part);
+    add_spread_part(source.shape, part.frame, ball.center, X_FG);
   }
+}
+
+/// Parts of the scene, whose frame is the world, are placed once and for all.
+void World::add_spread_part(const CollisionShape& shape, int frame, const Vector3d& ball_center,
+                            const Isometry3d& X_FG) {
+  const PlacedPart at_frame = placed(shape, X_FG, single_margin());
+  if (frame == kWorld) {
+    scene_parts_.push_back(at_frame);
+    return;
+  }
+  SpreadPart part{};
+  part.frame = frame;
+  for (int k = 0; k < 3; ++k) {
+    for (int vector = 0; vector < 4; ++vector) {
+      std::fill_n(part.box[vector / 2][k] + 4 * (vector % 2), 4,
+                  vector == 0 ? at_frame.center[k] : at_frame.axis[vector - 1][k]);
+      part.rest[vector / 2][4 * (vector % 2) + 3] = vector == 0 ? at_frame.center[3] : at_frame.axis[vector - 1][3];
+    }
+    std::fill_n(part.ball_center[k], 4, static_cast<float>((X_FG * ball_center)[k]));
+  }
+  spread_parts_.push_back(part);
 }
 
 int World::add_tree(const SphereTree& tree, const Isometry3d& X_FG) {
@@ -234,110 +190,16 @@ void World::add_groups() {
   }
 }
 
-int World::group_rows() const { return (static_cast<int>(groups_.size()) + kLanes - 1) / kLanes; }
-
-void World::add_checks(const CollisionWorld& world, bool fixed_root) {
-  const int scene_parts = static_cast<int>(parts_.size()) - robot_parts_;
-  for (int j = 0; j < scene_parts; ++j) add_scene_box(parts_[static_cast<std::size_t>(robot_parts_ + j)]);
-  for (int row = 0; row * kLanes < scene_parts; ++row) add_scene_row(row);
-  std::vector<std::vector<PartPair>> pairs(groups_.size());
-  for (int i = 0; i < robot_parts_; ++i) {
-    const Part& part = parts_[static_cast<std::size_t>(i)];
-    for (const int j : world.partners[static_cast<std::size_t>(i)]) {
-      const Part& other = parts_[static_cast<std::size_t>(j)];
-      const float reach = part.ball_radius + other.ball_radius;
-      if (part.frame == other.frame || (fixed_root && part.frame == kRoot && other.frame == kWorld)) {
-        constant_pairs_.emplace_back(i, j);
-      } else {
-        pairs[static_cast<std::size_t>(group_of_[static_cast<std::size_t>(i)])].push_back({i, j, reach * reach});
-      }
-    }
-  }
-  for (int group = 0; group < static_cast<int>(groups_.size()); ++group) {
-    add_checks_of(group, pairs[static_cast<std::size_t>(group)], fixed_root);
-  }
-}
-
-/// pairs: of the parts of one group, each with later parts.
-void World::add_checks_of(int group, const std::vector<PartPair>& pairs, bool fixed_root) {
-  const int rows = group_rows() + static_cast<int>(scene_rows_.size());
-  const float radius = groups_[static_cast<std::size_t>(group)].radius;
-  for (int row = 0; row < rows; ++row) {
-    unsigned char wanted = 0;
-    for (int place = 0; place < kLanes; ++place) {
-      const int begin = static_cast<int>(part_pairs_.size());
-      const bool scene = row >= group_rows();
-      const int partner = (scene ? row - group_rows() : row) * kLanes + place;
-      float reach = radius;
-      for (const PartPair& pair : pairs) {
-        const bool of_scene = pair.b >= robot_parts_;
-        const int own = of_scene ? pair.b - robot_parts_ : group_of_[static_cast<std::size_t>(pair.b)];
-        if (of_scene != scene || own != partner) continue;
-        if (scene && fixed_root && out_of_reach(group, parts_[static_cast<std::size_t>(pair.b)])) continue;
-        if (!scene) reach = radius + groups_[static_cast<std::size_t>(partner)].radius;
-        part_pairs_.push_back(pair);
-      }
-      const int end = static_cast<int>(part_pairs_.size());
-      if (end > begin) wanted = static_cast<unsigned char>(wanted | 1U << place);
-      pairs_.push_back({reach * reach, begin, end});
-    }
-    wanted_.push_back(wanted);
-  }
-}
-
-/// Boxes with the root's axes around kLanes parts of the scene.
-void World::add_scene_row(int row) {
-  BoxRow boxes;
-  for (int place = 0; place < kLanes; ++place) {
-    const std::size_t index = static_cast<std::size_t>(robot_parts_ + row * kLanes + place);
-    for (int axis = 0; axis < 3; ++axis) {
-      float half = -std::numeric_limits<float>::max();  // overlaps nothing
-      if (index < parts_.size()) {
-        const Part& part = parts_[index];
-        half = 0.0F;
-        for (int k = 0; k < 3; ++k) half += std::abs(part.box_axes[3 * axis + k]) * part.half_extents[k];
-        half *= 1.0F + kRadiusRounding;
-        boxes.center[axis][place] = part.box_center[axis];
-      } else {
-        boxes.center[axis][place] = 0.0F;
-      }
-      boxes.half[axis][place] = half;
-    }
-  }
-  scene_rows_.push_back(boxes);
-}
-
-void World::add_scene_box(const Part& part) {
-  SceneBox box;
-  const auto fill = [](float* lanes, float value) { std::fill_n(lanes, kLanes, value); };
-  for (int k = 0; k < 3; ++k) {
-    fill(box.center[k], part.box_center[k]);
-    fill(box.half[k], part.half_extents[k]);
-  }
-  for (int k = 0; k < 9; ++k) fill(box.axes[k], part.box_axes[k]);
-  const Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>> axes(part.box_axes);
-  box.aligned = axes.isIdentity(0.0F);
-  scene_boxes_.push_back(box);
-}
-
-/// Whether a group of the robot never meets a part of the scene, wherever the joints turn.
-bool World::out_of_reach(int group, const Part& other) const {
-  const Group& own = groups_[static_cast<std::size_t>(group)];
-  const Reach& reach = reach_[static_cast<std::size_t>(own.frame)];
-  const OrientedBox box{Eigen::Map<const Eigen::Vector3f>(other.box_center).cast<double>(),
-                        Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(other.box_axes).cast<double>(),
-                        Eigen::Map<const Eigen::Vector3f>(other.half_extents).cast<double>()};
-  const double around = Eigen::Map<const Eigen::Vector3f>(own.center).cast<double>().norm() + own.radius;
-  return point_box_distance(reach.center, box) > reach.radius + around + margin_;
-}
-
 Model World::model() const {
   const auto size = [](const auto& list) { return static_cast<int>(list.size()); };
   Model model;
   model.margin = static_cast<float>(margin_);
+  model.single_margin = static_cast<float>(single_margin());
   model.frames = frames_.data();
+  model.spread_frames = spread_frames_.data();
   model.frame_count = size(frames_);
   model.parts = parts_.data();
+  model.spread_parts = spread_parts_.data();
   model.robot_part_count = robot_parts_;
   model.part_count = size(parts_);
   model.nodes = nodes_.data();
@@ -347,9 +209,14 @@ Model World::model() const {
   model.scene_boxes = scene_boxes_.data();
   model.scene_rows = scene_rows_.data();
   model.scene_row_count = size(scene_rows_);
-  model.wanted = wanted_.data();
+  model.group_ranges = group_ranges_.data();
+  model.group_partners = group_partners_.data();
   model.pairs = pairs_.data();
   model.part_pairs = part_pairs_.data();
+  model.scene_parts = scene_parts_.data();
+  model.part_rows = part_rows();
+  model.partner_ranges = partner_ranges_.data();
+  model.partners = partners_.data();
   return model;
 }
 
@@ -360,19 +227,35 @@ bool World::holds(const double* q, int dof) const {
          });
 }
 
-int World::sweep(const Query& query, Buffers& buffers, bool portable) const {
-  const Model arrays = model();
-  const std::size_t size = static_cast<std::size_t>(workspace_size(arrays)) + kAlignment / sizeof(float);
+/// Memory for a sweep; buffers.found holds every pair as well.
+float* World::workspace(Buffers& buffers, const Model& model) const {
+  const std::size_t size = static_cast<std::size_t>(workspace_size(model)) + kAlignment / sizeof(float);
   if (buffers.memory.size() < size) buffers.memory.resize(size);
   if (buffers.found.size() < part_pairs_.size()) buffers.found.resize(part_pairs_.size());
   const auto address = reinterpret_cast<std::uintptr_t>(buffers.memory.data());
-  float* const workspace = buffers.memory.data() + (kAlignment - address % kAlignment) % kAlignment / sizeof(float);
+  return buffers.memory.data() + (kAlignment - address % kAlignment) % kAlignment / sizeof(float);
+}
+
+int World::sweep(const Query& query, Buffers& buffers, bool portable) const {
+  const Model arrays = model();
+  float* const memory = workspace(buffers, arrays);
 #if defined(OPPONENS_AVX2)
   static const bool fast = has_avx2();
-  if (fast && !portable) return sweep_avx2(arrays, query, workspace, buffers.found.data());
+  if (fast && !portable) return sweep_avx2(arrays, query, memory, buffers.found.data());
 #endif
   (void)portable;
-  return wide::sweep(arrays, query, workspace, buffers.found.data());
+  return wide::sweep(arrays, query, memory, buffers.found.data());
+}
+
+int World::sweep(const SingleQuery& query, Buffers& buffers, bool portable) const {
+  const Model arrays = model();
+  float* const memory = workspace(buffers, arrays);
+#if defined(OPPONENS_AVX2)
+  static const bool fast = has_avx2();
+  if (fast && !portable) return sweep_single_avx2(arrays, query, memory, buffers.found.data());
+#endif
+  (void)portable;
+  return sweep_single(arrays, query, memory, buffers.found.data());
 }
 
 }  // namespace opponens::robot::wide

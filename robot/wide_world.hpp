@@ -13,6 +13,15 @@
 
 namespace opponens::robot::wide {
 
+inline constexpr float kRadiusRounding = 1.0e-6F;  ///< share by which a length grows when it becomes a float
+
+inline void store(const Eigen::Vector3d& v, float* to) {
+  for (int i = 0; i < 3; ++i) to[i] = static_cast<float>(v[i]);
+}
+inline void store_rotation(const Eigen::Matrix3d& R, float* row_major) {
+  for (int i = 0; i < 3; ++i) store(R.row(i).transpose(), row_major + 3 * i);
+}
+
 /// Whether this processor has what the AVX2 paths need.
 bool has_avx2();
 
@@ -43,23 +52,33 @@ class World {
   };
   /// Writes every pair that may touch to the beginning of buffers.found and returns how many there are.
   int sweep(const Query& query, Buffers& buffers, bool portable) const;
+  int sweep(const SingleQuery& query, Buffers& buffers, bool portable) const;
 
   /// m, by which every ball and box is enlarged: at least twice the errors of the sweep's arithmetic. 2e-5 times the
   /// largest coordinate, of which rounding of angles (2e-7 rad for each joint of a chain, times its reach), of sines
   /// and of products takes a third at most; more for chains of more than 20 joints.
   double margin() const { return margin_; }
+  /// m, the same of the sweep over one configuration, of which only the places and axes of boxes are rounded, each
+  /// once: an error of at most 1.2e-6 times the largest coordinate between two boxes; beyond that, FCL's tolerance.
+  double single_margin() const { return 2e-6 * largest_ + 1e-6; }
 
   Model model() const;
 
  private:
   void add_frames(const RobotModel& robot);
+  void add_spread_frame(const Eigen::Isometry3d& X_PF);
   void add_parts(const CollisionWorld& world);
+  void add_spread_part(const CollisionShape& shape, int frame, const Eigen::Vector3d& ball_center,
+                       const Eigen::Isometry3d& X_FG);
   int add_tree(const SphereTree& tree, const Eigen::Isometry3d& X_FG);
   void add_groups();
   void add_checks(const CollisionWorld& world, bool fixed_root);
-  void add_checks_of(int group, const std::vector<PartPair>& pairs, bool fixed_root);
+  void add_checks_of(int group, const std::vector<PartPair>& pairs);
+  void add_partner(int part, int other);
   void add_scene_row(int row);
-  int group_rows() const;
+  int group_rows() const { return rows_of(static_cast<int>(groups_.size())); }
+  int part_rows() const { return rows_of(robot_parts_); }
+  static int rows_of(int count) { return (count + kLanes - 1) / kLanes; }
   void add_scene_box(const Part& part);
   bool out_of_reach(int group, const Part& other) const;
 
@@ -77,21 +96,29 @@ class World {
     double upper;
   };
 
+  float* workspace(Buffers& buffers, const Model& model) const;
+
   std::vector<Frame> frames_;
+  std::vector<SpreadFrame> spread_frames_;
   std::vector<Reach> reach_;  ///< [frames]
   std::vector<int> depth_;    ///< [frames] moving joints from the root
   std::vector<Slide> slides_;
   std::vector<int> frame_of_link_;       ///< [links]
   std::vector<Eigen::Isometry3d> X_FL_;  ///< [links]
   std::vector<Part> parts_;
+  std::vector<SpreadPart> spread_parts_;
   std::vector<Node> nodes_;
   std::vector<Group> groups_;
   std::vector<int> group_of_;  ///< [robot parts]
   std::vector<SceneBox> scene_boxes_;
   std::vector<BoxRow> scene_rows_;
-  std::vector<unsigned char> wanted_;
+  std::vector<RowRange> group_ranges_;
+  std::vector<GroupRow> group_partners_;
   std::vector<GroupPair> pairs_;
   std::vector<PartPair> part_pairs_;
+  std::vector<PlacedPart> scene_parts_;
+  std::vector<RowRange> partner_ranges_;
+  std::vector<PartnerRow> partners_;
   std::vector<std::pair<int, int>> constant_pairs_;
   int robot_parts_ = 0;
   double largest_ = 0.0;  ///< m

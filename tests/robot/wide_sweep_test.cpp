@@ -219,8 +219,8 @@ TEST(WideSweep, NearlyParallelBoxesThatOverlapAreNeverApart) {
     const Eigen::Vector3f gf = g.cast<float>();
     const wide::LaneBox a = lane_box(X_WA);
     const wide::LaneBox b = lane_box(X_WA * X_AB);
-    EXPECT_EQ((wide::boxes_near<false, false>(a, hf.data(), b, gf.data(), 255U)), 255U) << i;
-    EXPECT_EQ((wide::boxes_near<false, false>(b, gf.data(), a, hf.data(), 255U)), 255U) << i;
+    EXPECT_EQ(wide::boxes_near(a, wide::Cuboid{hf.data()}, b, wide::Cuboid{gf.data()}, 255U), 255U) << i;
+    EXPECT_EQ(wide::boxes_near(b, wide::Cuboid{gf.data()}, a, wide::Cuboid{hf.data()}, 255U), 255U) << i;
   }
 }
 
