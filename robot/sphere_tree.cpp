@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -12,6 +11,7 @@
 
 #include "core/require.hpp"
 #include "robot/mesh.hpp"
+#include "robot/smallest_ball.hpp"
 #include "robot/solid_region.hpp"
 
 namespace opponens::robot {
@@ -22,8 +22,6 @@ using Eigen::Vector3d;
 
 /// Radii are enlarged by this share, far above the rounding of distances in double precision.
 constexpr double kRounding = 1e-12;
-constexpr double kLooseness = 1e-3;   ///< share by which a ball may be larger than the smallest
-constexpr int kMostPivots = 32;       ///< points that may be added to a ball's support, one after the other
 constexpr int kBranching = 4;         ///< children per node wanted
 constexpr double kSliceLength = 0.5;  ///< of a cylinder's slices at most, in radii
 
@@ -132,87 +130,10 @@ class Half {
   Cell half_;
 };
 
-/// The point of the cell farthest from a center, and its squared distance.
-std::pair<const Vector3d*, double> farthest(const Cell& cell, const Vector3d& center) {
-  std::pair<const Vector3d*, double> far{nullptr, -1.0};
-  for (const auto* points : {&cell.points, &cell.filled}) {
-    for (const Vector3d& p : *points) {
-      const double squared = (p - center).squaredNorm();
-      if (squared > far.second) far = {&p, squared};
-    }
-  }
-  return far;
-}
-
-/// Up to four points and the smallest ball with all of them on its surface.
-struct Support {
-  std::array<Vector3d, 4> points;
-  int count = 0;
-  Vector3d center = Vector3d::Zero();
-  double squared = std::numeric_limits<double>::infinity();  ///< radius, m^2
-
-  void add(const Vector3d& p) { points[static_cast<std::size_t>(count++)] = p; }
-
-  /// The center is points[0] + sum_i l_i v_i with v_i = points[i] - points[0], where 2 sum_j (v_i v_j) l_j = v_i v_i.
-  /// NaN or something far away when the points have no such ball.
-  void circumscribe() {
-    using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>;
-    using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1>;
-    Small v(3, count - 1);
-    for (int i = 1; i < count; ++i) v.col(i - 1) = points[static_cast<std::size_t>(i)] - points[0];
-    Vector3d offset = Vector3d::Zero();
-    if (count == 2) offset = 0.5 * v.col(0);
-    if (count > 2) {
-      const Small gram = v.transpose() * v;
-      const Column right = 0.5 * gram.diagonal();
-      offset = v * Column(gram.ldlt().solve(right));
-    }
-    center = points[0] + offset;
-    squared = offset.squaredNorm();
-  }
-};
-
-/// The smallest ball around the points of another and one more, which lies outside that and so on the surface of this:
-/// the smallest of the balls through it and up to three of the others that contains all. Unchanged when rounding leaves
-/// none.
-Support pivot(const Support& old, const Vector3d& p) {
-  Support best;
-  for (unsigned chosen = 0; chosen < 1U << old.count; ++chosen) {
-    if (std::popcount(chosen) > 3) continue;
-    Support ball;
-    ball.add(p);
-    for (int i = 0; i < old.count; ++i) {
-      if ((chosen >> i & 1U) != 0) ball.add(old.points[static_cast<std::size_t>(i)]);
-    }
-    ball.circumscribe();
-    if (!(ball.squared < best.squared)) continue;
-    const bool contains = std::all_of(old.points.begin(), old.points.begin() + old.count, [&](const Vector3d& other) {
-      return (other - ball.center).squaredNorm() <= ball.squared * (1.0 + 1e-9);
-    });
-    if (contains) best = ball;
-  }
-  return best.count > 0 ? best : old;
-}
-
-/// A ball around all points of a cell, nearly the smallest: that of a few of them, to which the farthest is added again
-/// and again (Gaertner 1999, "Fast and robust smallest enclosing balls", with the points' plain distances at the end).
+/// A ball around all points of a cell, nearly the smallest.
 SphereTree::Node ball_of(const Cell& cell) {
-  SphereTree::Node ball{cell.box.center(), 0.0, 0, 0};
-  double least = std::numeric_limits<double>::infinity();
-  Support support;
-  support.center = ball.center;
-  support.squared = 0.0;
-  for (int i = 0; i < kMostPivots; ++i) {
-    const auto [far, squared] = farthest(cell, support.center);
-    if (squared < least) {
-      least = squared;
-      ball.center = support.center;
-    }
-    if (squared <= support.squared * (1.0 + 2.0 * kLooseness)) break;
-    support = pivot(support, *far);
-  }
-  ball.radius = std::sqrt(least) * (1.0 + kRounding);
-  return ball;
+  const EnclosingBall ball = enclosing_ball(cell.points, cell.filled);
+  return {ball.center, ball.radius * (1.0 + kRounding), 0, 0};
 }
 
 /// Binary tree of cells while it is made.
