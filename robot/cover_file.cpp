@@ -181,11 +181,12 @@ using Mesh = std::shared_ptr<const TriangleMesh>;
 void cover(std::vector<Geometry>& geometry, const fs::path& folder, std::map<Mesh, Mesh>& covered) {
   for (Geometry& one : geometry) {
     auto* const mesh = std::get_if<Mesh>(&one.shape);
-    if (mesh == nullptr || *mesh == nullptr || (*mesh)->cover != nullptr || (*mesh)->triangles.cols() == 0) continue;
+    if (mesh == nullptr || *mesh == nullptr || (*mesh)->cover.get() != nullptr || (*mesh)->triangles.cols() == 0)
+      continue;
     Mesh& known = covered[*mesh];
     if (known == nullptr) {
       auto copy = std::make_shared<TriangleMesh>(**mesh);
-      copy->cover = cached_cover(*copy, folder);
+      copy->cover.keep(cached_cover(*copy, folder));
       known = std::move(copy);
     }
     *mesh = known;

@@ -70,14 +70,14 @@ struct CollisionShape::Data {
   }
 
   const SphereTree& cover() const {
-    if (mesh != nullptr && mesh->cover != nullptr) return mesh->cover->tree;
+    if (mesh != nullptr && mesh->cover.get() != nullptr) return mesh->cover.get()->tree;
     std::call_once(cover_once,
                    [this] { cover_made = mesh != nullptr ? sphere_tree(*mesh, region()) : sphere_tree(shape); });
     return cover_made;
   }
 
   const HullVertices& hull() const {
-    if (mesh->cover != nullptr) return mesh->cover->hull;
+    if (mesh->cover.get() != nullptr) return mesh->cover.get()->hull;
     std::call_once(hull_once, [this] { hull_made = hull_vertices(*mesh); });
     return hull_made;
   }
@@ -143,18 +143,6 @@ struct BoundsOf {
   }
 };
 
-/// A necessary sign that a cover belongs to a mesh: its root ball contains the mesh. Copies of a mesh that were changed
-/// afterwards fail it.
-bool may_cover(const MeshCover& cover, const TriangleMesh& mesh) {
-  const SphereTree::Node& root = cover.tree.nodes.at(0);
-  for (const auto& triangle : mesh.triangles.colwise()) {
-    for (int k = 0; k < 3; ++k) {
-      if ((mesh.vertices.col(triangle[k]) - root.center).norm() > root.radius * (1.0 + 1e-9)) return false;
-    }
-  }
-  return true;
-}
-
 std::shared_ptr<const CollisionShape::Data> make_data(const Shape& shape) {
   auto data = std::make_shared<CollisionShape::Data>();
   data->shape = shape;
@@ -164,8 +152,6 @@ std::shared_ptr<const CollisionShape::Data> make_data(const Shape& shape) {
   if (data->primitive != nullptr) data->primitive->computeLocalAABB();
   if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&shape)) {
     data->mesh = *mesh;
-    require((*mesh)->cover == nullptr || may_cover(*(*mesh)->cover, **mesh),
-            [&] { return "collision: the mesh " + (*mesh)->source + " carries the cover of another"; });
   }
   return data;
 }
