@@ -22,7 +22,7 @@
 
 #include "core/require.hpp"
 #include "robot/convex_distance.hpp"
-#include "robot/cover_file.hpp"
+#include "robot/mesh_cover.hpp"
 #include "robot/solid_region.hpp"
 
 namespace opponens::robot {
@@ -69,17 +69,13 @@ struct CollisionShape::Data {
     return fcl_made.get();
   }
 
-  const SphereTree& cover() const {
-    if (mesh != nullptr && mesh->cover.get() != nullptr) return mesh->cover.get()->tree;
-    std::call_once(cover_once,
-                   [this] { cover_made = mesh != nullptr ? sphere_tree(*mesh, region()) : sphere_tree(shape); });
+  /// Of a primitive a tree alone.
+  const MeshCover& cover() const {
+    if (mesh != nullptr && mesh->cover.get() != nullptr) return *mesh->cover.get();
+    std::call_once(cover_once, [this] {
+      cover_made = mesh != nullptr ? mesh_cover(*mesh, region()) : MeshCover{sphere_tree(shape), {}, {}};
+    });
     return cover_made;
-  }
-
-  const HullVertices& hull() const {
-    if (mesh->cover.get() != nullptr) return mesh->cover.get()->hull;
-    std::call_once(hull_once, [this] { hull_made = hull_vertices(*mesh); });
-    return hull_made;
   }
 
   bool contains(const Eigen::Vector3d& p) const {
@@ -95,9 +91,7 @@ struct CollisionShape::Data {
   mutable std::once_flag region_once;
   mutable std::once_flag fcl_once;
   mutable std::once_flag cover_once;
-  mutable std::once_flag hull_once;
-  mutable HullVertices hull_made;
-  mutable SphereTree cover_made;
+  mutable MeshCover cover_made;
   mutable std::unique_ptr<const SolidRegion> region_made;
   mutable std::shared_ptr<fcl::CollisionGeometryd> fcl_made;
 };
@@ -234,14 +228,14 @@ CollisionShape::CollisionShape(const Shape& shape) {
   bounds_ = data_->bounds;
 }
 
-const SphereTree& CollisionShape::cover() const { return data_->cover(); }
+const SphereTree& CollisionShape::cover() const { return data_->cover().tree; }
+
+const std::vector<HullVertices>& CollisionShape::pieces() const { return data_->cover().pieces; }
 
 const HullVertices& CollisionShape::hull() const {
   require(data_->mesh != nullptr, "CollisionShape: only a mesh has hull vertices");
-  return data_->hull();
+  return data_->cover().hull;
 }
-
-double CollisionShape::hull_rounding() const { return data_->mesh == nullptr ? 0.0 : data_->hull().rounding; }
 
 const Shape& CollisionShape::shape() const { return data_->shape; }
 

@@ -180,6 +180,7 @@ std::vector<Branch> grow(Branch root, const Inside& asked, const SphereTreeSetti
     if (branches[parent].ball.radius <= settings.radius) break;
     std::array<Branch, 2> halves = divide(branches[parent].cell, inside);
     leaves.erase(largest);
+    if (halves[0].cell.empty() && halves[1].cell.empty()) continue;  // coordinates too large to be divided
     branches[parent].cell = {};
     for (std::size_t side = 0; side < 2; ++side) {
       if (halves[side].cell.empty()) continue;
@@ -214,26 +215,32 @@ std::vector<int> gathered(const std::vector<Branch>& branches, int index) {
   return children;
 }
 
-SphereTree flatten(const std::vector<Branch>& branches) {
-  SphereTree tree;
+/// Takes the points from the leaves.
+CellTree flatten(std::vector<Branch>& branches) {
+  CellTree made;
+  std::vector<SphereTree::Node>& nodes = made.tree.nodes;
   std::vector<int> source{0};
-  tree.nodes.push_back(branches[0].ball);
-  for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
-    const Branch& branch = branches[static_cast<std::size_t>(source[i])];
-    if (branch.children == std::array<int, 2>{-1, -1}) continue;
-    tree.nodes[i].first_child = static_cast<int>(tree.nodes.size());
+  nodes.push_back(branches[0].ball);
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    Branch& branch = branches[static_cast<std::size_t>(source[i])];
+    CellTree::Cell& cell = made.cells.emplace_back();
+    if (branch.children == std::array<int, 2>{-1, -1}) {
+      cell.on_surface = static_cast<int>(branch.cell.points.size());
+      cell.points = std::move(branch.cell.points);
+      cell.points.insert(cell.points.end(), branch.cell.filled.begin(), branch.cell.filled.end());
+      continue;
+    }
+    nodes[i].first_child = static_cast<int>(nodes.size());
     for (const int child : gathered(branches, source[i])) {
-      tree.nodes.push_back(branches[static_cast<std::size_t>(child)].ball);
+      nodes.push_back(branches[static_cast<std::size_t>(child)].ball);
       source.push_back(child);
     }
-    tree.nodes[i].children = static_cast<int>(tree.nodes.size()) - tree.nodes[i].first_child;
+    nodes[i].children = static_cast<int>(nodes.size()) - nodes[i].first_child;
   }
-  return tree;
+  return made;
 }
 
-}  // namespace
-
-SphereTree sphere_tree(const TriangleMesh& surface, const Inside& inside, const SphereTreeSettings& settings) {
+CellTree cell_tree(const TriangleMesh& surface, const Inside& inside, const SphereTreeSettings& settings) {
   require(surface.triangles.cols() > 0, "sphere_tree: a surface without triangles");
   require(settings.leaves >= 1 && settings.radius > 0.0, "sphere_tree: leaves must be at least 1, radius positive");
   Branch root;
@@ -251,10 +258,9 @@ SphereTree sphere_tree(const TriangleMesh& surface, const Inside& inside, const 
     }
   }
   root.ball = ball_of(root.cell);  // the solid lies in the convex hull of its surface
-  return flatten(grow(std::move(root), inside, settings));
+  std::vector<Branch> branches = grow(std::move(root), inside, settings);
+  return flatten(branches);
 }
-
-namespace {
 
 /// Balls on the axis, each around a slice: they fit the side closely and stick out at the ends.
 SphereTree slices(const Cylinder& cylinder, double longest) {
@@ -279,9 +285,13 @@ SphereTree slices(const Cylinder& cylinder, double longest) {
 
 }  // namespace
 
-SphereTree sphere_tree(const TriangleMesh& mesh, const SolidRegion& region, const SphereTreeSettings& settings) {
-  return sphere_tree(
+CellTree cell_tree(const TriangleMesh& mesh, const SolidRegion& region, const SphereTreeSettings& settings) {
+  return cell_tree(
       mesh, [&](const Vector3d& p) { return region.touches(p); }, settings);
+}
+
+SphereTree sphere_tree(const TriangleMesh& surface, const Inside& inside, const SphereTreeSettings& settings) {
+  return cell_tree(surface, inside, settings).tree;
 }
 
 SphereTree sphere_tree(const Shape& shape, const SphereTreeSettings& settings) {
@@ -290,7 +300,7 @@ SphereTree sphere_tree(const Shape& shape, const SphereTreeSettings& settings) {
     return slices(*cylinder, std::max(kSliceLength * cylinder->radius, cylinder->length / settings.leaves));
   }
   if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&shape)) {
-    return sphere_tree(**mesh, SolidRegion(**mesh), settings);
+    return cell_tree(**mesh, SolidRegion(**mesh), settings).tree;
   }
   // A box is convex and fills its bounding box.
   return sphere_tree(

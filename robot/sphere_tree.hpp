@@ -45,7 +45,20 @@ SphereTree sphere_tree(const TriangleMesh& surface, const Inside& inside, const 
 
 class SolidRegion;
 
+/// A sphere tree and what it was made of.
+struct CellTree {
+  SphereTree tree;
+  /// Of a leaf, points whose convex hull contains the solid in its cell; of other nodes none.
+  struct Cell {
+    std::vector<Eigen::Vector3d> points;  ///< m
+    int on_surface = 0;                   ///< how many of them, the first ones, lie on the surface
+  };
+  /// [nodes] The hulls of all leaves' cells together contain the solid, and those of the leaves below a node its part
+  /// in the node's ball.
+  std::vector<Cell> cells;
+};
+
 /// That of a mesh whose region is known already.
-SphereTree sphere_tree(const TriangleMesh& mesh, const SolidRegion& region, const SphereTreeSettings& settings = {});
+CellTree cell_tree(const TriangleMesh& mesh, const SolidRegion& region, const SphereTreeSettings& settings = {});
 
 }  // namespace opponens::robot
