@@ -113,9 +113,9 @@ std::vector<Eigen::Index> hull_indices(const Eigen::Matrix3Xd& points) {
   return *found;
 }
 
-HullVertices hull_vertices(const Eigen::Matrix3Xd& points, int on_surface) {
+HullVertices hull_vertices(const Eigen::Matrix3Xd& points) {
   require(points.cols() > 0, "hull_vertices: no points");
-  HullVertices hull{padded(points), {}, 0.0, on_surface};
+  HullVertices hull{padded(points), {}, 0.0};
   if (points.cols() > kFew) hull.few = padded(farthest_all_around(points));
   // Of storing, of qhull's merged facets, and of the farthest vertex found in single precision.
   hull.rounding = 16.0 * std::numeric_limits<float>::epsilon() * points.cwiseAbs().maxCoeff();
@@ -132,8 +132,7 @@ HullVertices hull_vertices(const TriangleMesh& mesh) {
     if (is_used[static_cast<std::size_t>(i)]) used.push_back(i);
   }
   const Eigen::Matrix3Xd points = mesh.vertices(Eigen::all, used);
-  const std::vector<Eigen::Index> extreme = hull_indices(points);
-  return hull_vertices(points(Eigen::all, extreme), static_cast<int>(extreme.size()));
+  return hull_vertices(points(Eigen::all, hull_indices(points)));
 }
 
 }  // namespace opponens::robot

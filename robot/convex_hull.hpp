@@ -27,7 +27,6 @@ struct HullVertices {
   PaddedPoints all;
   PaddedPoints few;       ///< of many, those farthest in some directions, to search among first; of few none
   double rounding = 0.0;  ///< m; the true hull lies within this of the stored points' hull
-  int on_surface = 0;     ///< how many of the points, the first ones, are known to lie on the surface of the solid
 };
 
 /// Which of some points, [3 x n] m, are vertices of their convex hull, by qhull (exact but for its own rounding),
@@ -35,7 +34,7 @@ struct HullVertices {
 std::vector<Eigen::Index> hull_indices(const Eigen::Matrix3Xd& points);
 
 /// Of points that are vertices of a hull, [3 x n] m, n >= 1.
-HullVertices hull_vertices(const Eigen::Matrix3Xd& points, int on_surface);
+HullVertices hull_vertices(const Eigen::Matrix3Xd& points);
 
 /// Of a mesh's vertices that triangles have: another is no point of the solid.
 HullVertices hull_vertices(const TriangleMesh& mesh);

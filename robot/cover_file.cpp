@@ -86,7 +86,6 @@ void put(std::string& bytes, const HullVertices& hull) {
     put(bytes, points->xyz.data(), points->xyz.size());
   }
   put(bytes, hull.rounding);
-  put(bytes, hull.on_surface);
 }
 
 void take(std::string_view& bytes, HullVertices& hull) {
@@ -96,7 +95,6 @@ void take(std::string_view& bytes, HullVertices& hull) {
     take(bytes, points->xyz.data(), points->xyz.size());
   }
   hull.rounding = take<double>(bytes);
-  hull.on_surface = take<int>(bytes);
 }
 
 /// What a cover depends on, hashed.

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/mesh_cover.hpp"
 
-#include <algorithm>
 #include <utility>
 
 #include "robot/solid_region.hpp"
@@ -11,12 +10,11 @@ namespace opponens::robot {
 
 namespace {
 
-HullVertices piece(const CellTree::Cell& cell) {
-  const Eigen::Map<const Eigen::Matrix3Xd> points(cell.points.data()->data(), 3,
-                                                  static_cast<Eigen::Index>(cell.points.size()));
-  const std::vector<Eigen::Index> extreme = hull_indices(points);
-  const auto filled = std::lower_bound(extreme.begin(), extreme.end(), cell.on_surface);
-  return hull_vertices(points(Eigen::all, extreme), static_cast<int>(filled - extreme.begin()));
+/// Of a leaf's points; none where a cell is solid throughout.
+HullVertices piece(const std::vector<Eigen::Vector3d>& own) {
+  if (own.empty()) return {};
+  const Eigen::Map<const Eigen::Matrix3Xd> points(own.data()->data(), 3, static_cast<Eigen::Index>(own.size()));
+  return hull_vertices(points(Eigen::all, hull_indices(points)));
 }
 
 }  // namespace
@@ -24,9 +22,7 @@ HullVertices piece(const CellTree::Cell& cell) {
 MeshCover mesh_cover(const TriangleMesh& mesh, const SolidRegion& region) {
   CellTree made = cell_tree(mesh, region);
   MeshCover cover{std::move(made.tree), {}, hull_vertices(mesh)};
-  for (const CellTree::Cell& cell : made.cells) {
-    cover.pieces.push_back(cell.points.empty() ? HullVertices{} : piece(cell));
-  }
+  for (const auto& points : made.points) cover.pieces.push_back(piece(points));
   return cover;
 }
 

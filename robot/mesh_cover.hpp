@@ -13,8 +13,8 @@ namespace opponens::robot {
 /// What the collision checker makes of a mesh before its first question.
 struct MeshCover {
   SphereTree tree;
-  /// [nodes] of a leaf the convex hull of a part of the solid, of other nodes nothing. The hulls of the leaves contain
-  /// the solid together, and those of the leaves below a node its part in the node's ball.
+  /// [nodes] of a leaf the convex hull of a part of the surface, of other nodes nothing. The hulls of the leaves
+  /// contain the surface together, and those of the leaves below a node its part in the node's ball.
   std::vector<HullVertices> pieces;
   HullVertices hull;  ///< of the whole mesh
 };

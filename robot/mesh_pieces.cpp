@@ -14,6 +14,7 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
+constexpr int kMostAsked = 12;       ///< pairs of pieces; more take as long as the whole meshes
 constexpr std::size_t kStack = 256;  ///< entries of a descent; wider trees end it with "unknown"
 
 bool is_mesh(const CollisionShape& shape) {
@@ -27,14 +28,22 @@ struct Pieces {
 
   explicit Pieces(const CollisionShape& mesh) : nodes(mesh.cover().nodes), hulls(mesh.pieces()) {}
   const SphereTree::Node& node(int index) const { return nodes[static_cast<std::size_t>(index)]; }
+  /// A leaf that is solid throughout has none.
+  bool has_piece(int leaf) const { return hulls[static_cast<std::size_t>(leaf)].all.count > 0; }
   ConvexSolid piece(int leaf) const { return {&hulls[static_cast<std::size_t>(leaf)], node(leaf).center}; }
 };
 
-bool meshes_apart(const Pieces& a, const Pieces& b, const Isometry3d& X_AB, double margin) {
+/// Planes keep most pieces apart. Of the triangles in the others the truth is asked.
+Solids two_meshes(const CollisionShape& A, const Isometry3d& X_WA, const CollisionShape& B, const Isometry3d& X_WB,
+                  double margin) {
   struct Entry {
     int a;
     int b;
   };
+  const Pieces a(A);
+  const Pieces b(B);
+  const Isometry3d X_AB = X_WA.inverse(Eigen::Isometry) * X_WB;
+  int asked = 0;
   std::array<Entry, kStack> stack;  // NOLINT: filled before it is read
   std::size_t size = 0;
   stack[size++] = {0, 0};
@@ -47,15 +56,18 @@ bool meshes_apart(const Pieces& a, const Pieces& b, const Isometry3d& X_AB, doub
     const bool divide_a = node_b.children == 0 || (node_a.children > 0 && node_a.radius >= node_b.radius);
     const SphereTree::Node& divided = divide_a ? node_a : node_b;
     if (divided.children == 0) {
-      if (convex_relation(a.piece(entry.a), b.piece(entry.b), X_AB, margin, 0.0) != Convex::apart) return false;
+      if (!a.has_piece(entry.a) || !b.has_piece(entry.b)) continue;
+      if (convex_relation(a.piece(entry.a), b.piece(entry.b), X_AB, margin, 0.0) == Convex::apart) continue;
+      if (++asked > kMostAsked) return Solids::unknown;
+      if (leaves_meet(A, X_WA, entry.a, B, X_WB, entry.b)) return Solids::touching;
       continue;
     }
-    if (size + static_cast<std::size_t>(divided.children) > kStack) return false;
+    if (size + static_cast<std::size_t>(divided.children) > kStack) return Solids::unknown;
     for (int child = divided.first_child; child < divided.first_child + divided.children; ++child) {
       stack[size++] = divide_a ? Entry{child, entry.b} : Entry{entry.a, child};
     }
   }
-  return true;
+  return contained(A, X_WA, B, X_WB) ? Solids::touching : Solids::apart;
 }
 
 /// Whether a point is inside a primitive by `depth`.
@@ -74,12 +86,13 @@ struct DeepInside {
 /// Whether a point of the surface in a piece is; known to a rounding that has to be far below that.
 bool surface_reaches_into(const HullVertices& piece, const Shape& primitive, const Isometry3d& X_PM, double depth) {
   if (piece.rounding > 0.5 * depth) return false;  // of a mesh that reaches further than some metres
-  for (int i = 0; i < piece.on_surface; ++i) {
+  for (int i = 0; i < piece.all.count; ++i) {
     if (std::visit(DeepInside{X_PM * piece.all.point(i), depth}, primitive)) return true;
   }
   return false;
 }
 
+/// Of their surfaces.
 Solids mesh_and_primitive(const Pieces& mesh, const CollisionShape& primitive, const Isometry3d& X_MP, double margin,
                           double depth) {
   const ConvexSolid solid = convex_solid(primitive);
@@ -94,6 +107,7 @@ Solids mesh_and_primitive(const Pieces& mesh, const CollisionShape& primitive, c
     const SphereTree::Node& node = mesh.node(index);
     if (point_box_distance(X_PM * node.center, box) > node.radius + margin) continue;
     if (node.children == 0) {
+      if (!mesh.has_piece(index)) continue;
       if (convex_relation(mesh.piece(index), solid, X_MP, margin, 0.0) == Convex::apart) continue;
       found = Solids::unknown;
       const HullVertices& piece = mesh.hulls[static_cast<std::size_t>(index)];
@@ -110,10 +124,11 @@ Solids mesh_and_primitive(const Pieces& mesh, const CollisionShape& primitive, c
 
 Solids pieces_relation(const CollisionShape& a, const Isometry3d& X_WA, const CollisionShape& b, const Isometry3d& X_WB,
                        double margin, double depth) {
-  const Isometry3d X_AB = X_WA.inverse(Eigen::Isometry) * X_WB;
-  if (!is_mesh(a)) return mesh_and_primitive(Pieces(b), a, X_AB.inverse(Eigen::Isometry), margin, depth);
-  if (!is_mesh(b)) return mesh_and_primitive(Pieces(a), b, X_AB, margin, depth);
-  return meshes_apart(Pieces(a), Pieces(b), X_AB, margin) ? Solids::apart : Solids::unknown;
+  if (is_mesh(a) && is_mesh(b)) return two_meshes(a, X_WA, b, X_WB, margin);
+  const Solids surfaces = is_mesh(a)
+                              ? mesh_and_primitive(Pieces(a), b, X_WA.inverse(Eigen::Isometry) * X_WB, margin, depth)
+                              : mesh_and_primitive(Pieces(b), a, X_WB.inverse(Eigen::Isometry) * X_WA, margin, depth);
+  return surfaces == Solids::apart && contained(a, X_WA, b, X_WB) ? Solids::touching : surfaces;
 }
 
 }  // namespace opponens::robot

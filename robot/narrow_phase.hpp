@@ -34,7 +34,7 @@ class CollisionShape {
   const SphereTree& cover() const;
   /// Vertices of a mesh's convex hull; throws std::invalid_argument for a primitive.
   const HullVertices& hull() const;
-  /// [nodes of cover()] of a mesh, convex hulls that contain it together (MeshCover); of a primitive none.
+  /// [nodes of cover()] of a mesh, convex hulls that contain its surface together (MeshCover); of a primitive none.
   const std::vector<HullVertices>& pieces() const;
   const Shape& shape() const;
 
@@ -56,6 +56,15 @@ class CollisionShape {
 /// cavities, so meshes whose parts overlap are solid throughout.
 bool intersect(const CollisionShape& a, const Eigen::Isometry3d& X_WA, const CollisionShape& b,
                const Eigen::Isometry3d& X_WB);
+
+/// Its last part: whether one contains the other, after their surfaces were found apart.
+bool contained(const CollisionShape& a, const Eigen::Isometry3d& X_WA, const CollisionShape& b,
+               const Eigen::Isometry3d& X_WB);
+
+/// Its first part for two meshes, of the triangles in leaves of their covers (and some beside): FCL's verdict on each
+/// pair of triangles is the same. Throws nothing but what FCL refuses.
+bool leaves_meet(const CollisionShape& a, const Eigen::Isometry3d& X_WA, int leaf_a, const CollisionShape& b,
+                 const Eigen::Isometry3d& X_WB, int leaf_b);
 
 /// Distance between two solids, m; 0 when they intersect, and at least 1e-9 when they do not (a distance can round to
 /// nothing where the collision test still tells the two apart). With a primitive: a proven lower bound within 1e-7 m of

@@ -223,11 +223,9 @@ CellTree flatten(std::vector<Branch>& branches) {
   nodes.push_back(branches[0].ball);
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     Branch& branch = branches[static_cast<std::size_t>(source[i])];
-    CellTree::Cell& cell = made.cells.emplace_back();
+    std::vector<Vector3d>& points = made.points.emplace_back();
     if (branch.children == std::array<int, 2>{-1, -1}) {
-      cell.on_surface = static_cast<int>(branch.cell.points.size());
-      cell.points = std::move(branch.cell.points);
-      cell.points.insert(cell.points.end(), branch.cell.filled.begin(), branch.cell.filled.end());
+      points = std::move(branch.cell.points);
       continue;
     }
     nodes[i].first_child = static_cast<int>(nodes.size());

@@ -48,14 +48,10 @@ class SolidRegion;
 /// A sphere tree and what it was made of.
 struct CellTree {
   SphereTree tree;
-  /// Of a leaf, points whose convex hull contains the solid in its cell; of other nodes none.
-  struct Cell {
-    std::vector<Eigen::Vector3d> points;  ///< m
-    int on_surface = 0;                   ///< how many of them, the first ones, lie on the surface
-  };
-  /// [nodes] The hulls of all leaves' cells together contain the solid, and those of the leaves below a node its part
-  /// in the node's ball.
-  std::vector<Cell> cells;
+  /// [nodes] m; of a leaf the corners of the surface's triangles clipped to its cell, of other nodes none. The convex
+  /// hulls of the leaves' points contain the surface together, and those of the leaves below a node its part in the
+  /// node's ball.
+  std::vector<std::vector<Eigen::Vector3d>> points;
 };
 
 /// That of a mesh whose region is known already.

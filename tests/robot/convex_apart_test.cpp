@@ -124,7 +124,7 @@ TEST(HullVertices, TheFewAreSomeOfThem) {
     EXPECT_TRUE(known) << i;
   }
   EXPECT_EQ(hull_vertices(triangulate(Box{{1, 1, 1}})).few.count, 0);
-  EXPECT_THROW(hull_vertices(Eigen::Matrix3Xd(3, 0), 0), std::invalid_argument);
+  EXPECT_THROW(hull_vertices(Eigen::Matrix3Xd(3, 0)), std::invalid_argument);
 }
 
 /// Two convex shapes near each other.

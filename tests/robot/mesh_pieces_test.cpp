@@ -37,7 +37,7 @@ bool may_hold(const HullVertices& piece, const SphereTree::Node& node, const Vec
 bool held(const MeshCover& cover, std::size_t index, const Vector3d& p) {
   const SphereTree::Node& node = cover.tree.nodes[index];
   if ((p - node.center).norm() > node.radius * (1.0 + 1e-12)) return false;
-  if (node.children == 0) return may_hold(cover.pieces[index], node, p);
+  if (node.children == 0) return cover.pieces[index].all.count > 0 && may_hold(cover.pieces[index], node, p);
   for (int child = 0; child < node.children; ++child) {
     if (held(cover, static_cast<std::size_t>(node.first_child + child), p)) return true;
   }
@@ -49,14 +49,12 @@ int not_held(const MeshCover& cover, const std::vector<Vector3d>& points) {
       std::count_if(points.begin(), points.end(), [&](const Vector3d& p) { return !held(cover, 0, p); }));
 }
 
-TEST(MeshPieces, ContainTheSolid) {
+TEST(MeshPieces, ContainTheSurface) {
   Rng rng(1);
   for (const Case& c : cases()) {
     const MeshCover cover = mesh_cover(c.mesh);
     ASSERT_EQ(cover.pieces.size(), cover.tree.nodes.size());
     EXPECT_EQ(not_held(cover, surface_points(c.mesh, 2000, rng)), 0) << c.name;
-    if (!c.solid) continue;
-    EXPECT_EQ(not_held(cover, inner_points(c.mesh, 3000, rng)), 0) << c.name;
   }
 }
 
@@ -64,10 +62,7 @@ TEST(MeshPieces, ContainRealMeshes) {
   if (!std::filesystem::exists(OPPONENS_SHARED_DATA "/data/robots")) GTEST_SKIP() << "no " OPPONENS_SHARED_DATA;
   Rng rng(2);
   for (const auto& mesh : real_meshes()) {
-    const MeshCover cover = mesh_cover(*mesh);
-    EXPECT_EQ(not_held(cover, surface_points(*mesh, 1000, rng)), 0) << mesh->source;
-    if (!is_closed(*mesh)) continue;
-    EXPECT_EQ(not_held(cover, inner_points(*mesh, 100, rng)), 0) << mesh->source;
+    EXPECT_EQ(not_held(mesh_cover(*mesh), surface_points(*mesh, 1000, rng)), 0) << mesh->source;
   }
 }
 
@@ -90,26 +85,19 @@ TEST(MeshPieces, SmallerOrFewerOnesWouldBeNoticed) {
     }
     EXPECT_GT(not_held(smaller, points), 0) << c.name;
     MeshCover fewer = cover;
-    fewer.pieces.back() = fewer.pieces[fewer.pieces.size() - 2];
+    for (std::size_t i = fewer.pieces.size() * 3 / 4; i < fewer.pieces.size(); ++i) fewer.pieces[i] = {};
     EXPECT_GT(not_held(fewer, points), 0) << c.name;
   }
 }
 
-TEST(MeshPieces, PointsCountedAsOnTheSurfaceAre) {
+TEST(MeshPieces, AreOfPointsOnTheSurface) {
   for (const Case& c : cases()) {
     const BoundingVolumeTree surface(c.mesh);
-    const MeshCover cover = mesh_cover(c.mesh);
-    int on_surface = 0;
-    int filled = 0;
-    for (const HullVertices& piece : cover.pieces) {
-      for (int i = 0; i < piece.on_surface; ++i) {
+    for (const HullVertices& piece : mesh_cover(c.mesh).pieces) {
+      for (int i = 0; i < piece.all.count; ++i) {
         EXPECT_LE(std::sqrt(surface.nearest(piece.all.point(i)).squared_distance), piece.rounding) << c.name;
       }
-      on_surface += piece.on_surface;
-      filled += piece.all.count - piece.on_surface;
     }
-    EXPECT_GT(on_surface, 0) << c.name;
-    EXPECT_TRUE(c.name != "ball" || filled > 100);  // corners of cells inside it
   }
 }
 
@@ -168,7 +156,8 @@ void compare(const CollisionShape& a, const CollisionShape& b, const Isometry3d&
   const bool meet = intersect(a, X_WA, b, X_WB);
   if (told == Solids::apart) {
     EXPECT_FALSE(meet);
-    EXPECT_GT(separation(a, X_WA, b, X_WB), 0.5 * kCullMargin);
+    const bool by_planes = a.pieces().empty() || b.pieces().empty();
+    EXPECT_GT(separation(a, X_WA, b, X_WB), by_planes ? 0.5 * kCullMargin : 0.0);
   }
   EXPECT_TRUE(told != Solids::touching || meet);
   EXPECT_NE(pieces_relation(b, X_WB, a, X_WA, kCullMargin, kDepth), meet ? Solids::apart : Solids::touching);
@@ -216,7 +205,8 @@ TEST(MeshPieces, TwoMeshesAsTheTruth) {
   }
   EXPECT_GT(sum.apart, sum.hulls_apart + 100);
   EXPECT_GT(sum.apart, sum.truly_apart * 9 / 10);
-  EXPECT_EQ(sum.touching, 0);
+  // The truth is asked about few pairs of pieces, which settles nearly all.
+  EXPECT_GT(sum.touching, sum.truly_touching * 9 / 10);
   EXPECT_GT(sum.truly_touching, 500);
 }
 
