@@ -22,7 +22,6 @@ robot::Shape grown(const robot::Cylinder& cylinder, double margin) {
 
 robot::Shape grown(const std::shared_ptr<const robot::TriangleMesh>& mesh, double margin) {
   auto larger = std::make_shared<robot::TriangleMesh>(*mesh);
-  larger->cover = nullptr;  // it is of the smaller one
   Eigen::Matrix3Xd normals = Eigen::Matrix3Xd::Zero(3, mesh->vertices.cols());
   for (const auto& triangle : mesh->triangles.colwise()) {
     const Eigen::Vector3d a = mesh->vertices.col(triangle[0]);

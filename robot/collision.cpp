@@ -71,7 +71,7 @@ struct CollisionChecker::World {
     // The truth is asked each time about those that are not apart for certain: of faces that just touch, rounding
     // decides it, and rounding differs from pose to pose.
     for (const auto& [a, b] : fixed.constant_pairs()) {
-      if (placement.hulls(a, b) == Convex::apart || placement.separation(a, b) > kTouching) continue;
+      if (placement.relation(a, b) == Solids::apart || placement.separation(a, b) > kTouching) continue;
       constant.emplace_back(a, b);
       if (!exact.of_scene(b)) constant_self.emplace_back(a, b);
     }
@@ -121,14 +121,9 @@ struct CollisionChecker::World {
     Placement placement(exact, X_WR, q, own_memory());
     for (const wide::Unknown& pair : unknown) {
       if (!concerns(pair)) continue;
-      // Separating axes tell all of two boxes, and cheaply; primitives are their own hulls.
-      if (!exact.is_box(pair.a) || !exact.is_box(pair.b)) {
-        const Convex hulls = placement.hulls(pair.a, pair.b);
-        if (hulls == Convex::apart) continue;
-        const bool primitives = !exact.is_mesh(pair.a) && !exact.is_mesh(pair.b);
-        if (hulls == Convex::overlapping && primitives) return false;
-      }
-      if (placement.share_a_point(pair.a, pair.b)) return false;
+      const Solids relation = placement.relation(pair.a, pair.b);
+      if (relation == Solids::apart) continue;
+      if (relation == Solids::touching) return false;
       ++asked;
       if (placement.collide(pair.a, pair.b)) return false;
     }

@@ -12,10 +12,6 @@ namespace opponens::robot {
 
 namespace {
 
-/// m. Bounding volumes must be further apart than this to settle a pair: above the tolerance of FCL's tests (1e-6), so
-/// that the verdict is the narrow phase's, with or without them.
-constexpr double kCullMargin = 2e-6;
-
 /// The pairs that are not to be checked, either way round.
 std::set<BodyPair> excluded_pairs(const RobotModel& robot, const Scene& scene, const std::vector<BodyPair>& touching) {
   std::set<std::string> known;
@@ -34,17 +30,6 @@ std::set<BodyPair> excluded_pairs(const RobotModel& robot, const Scene& scene, c
 }
 
 constexpr double kWitnessDepth = 1e-5;  ///< m
-
-/// Whether a point is inside a primitive by kWitnessDepth; false for a mesh.
-bool deep_inside(const Shape& shape, const Eigen::Vector3d& p) {
-  if (const auto* box = std::get_if<Box>(&shape)) {
-    return (0.5 * box->size - p.cwiseAbs()).minCoeff() > kWitnessDepth;
-  }
-  if (const auto* sphere = std::get_if<Sphere>(&shape)) return p.norm() < sphere->radius - kWitnessDepth;
-  const auto* cylinder = std::get_if<Cylinder>(&shape);
-  return cylinder != nullptr && p.head<2>().norm() < cylinder->radius - kWitnessDepth &&
-         std::abs(p.z()) < 0.5 * cylinder->length - kWitnessDepth;
-}
 
 /// For the parallel edges of two boxes, whose cross product is nothing but rounding.
 constexpr double kNothing = 1e-14;
@@ -152,28 +137,20 @@ bool Placement::collide(int a, int b) {
   return intersect(A, at_a.X_WG, B, at_b.X_WG);
 }
 
-Convex Placement::hulls(int a, int b) {
+Solids Placement::relation(int a, int b) {
+  // Separating axes tell all of two boxes, and cheaply.
+  if (world_.is_box(a) && world_.is_box(b)) {
+    return boxes_overlap(at(a).box, at(b).box) ? Solids::touching : Solids::unknown;
+  }
   const CollisionShape& A = world_.shape(a);
   const CollisionShape& B = world_.shape(b);
-  return convex_relation(A, at(a).X_WG, B, at(b).X_WG, kCullMargin, kWitnessDepth);
-}
-
-/// Vertices of the hull are points of the mesh, known to a rounding that has to be far below kWitnessDepth.
-bool Placement::holds_a_vertex(int primitive, int mesh) {
-  const CollisionShape& hull_of = world_.shape(mesh);
-  const Shape& shape = world_.shape(primitive).shape();
-  const HullVertices& hull = hull_of.hull();
-  if (hull.rounding > 0.5 * kWitnessDepth) return false;  // of a mesh that reaches further than some metres
-  const Eigen::Isometry3d X_PM = at(primitive).X_WG.inverse(Eigen::Isometry) * at(mesh).X_WG;
-  for (int i = 0; i < hull.count; ++i) {
-    if (deep_inside(shape, X_PM * hull.vertex(i))) return true;
+  const bool meshes = world_.is_mesh(a) || world_.is_mesh(b);  // primitives are their own hulls
+  const Convex hulls = convex_relation(A, at(a).X_WG, B, at(b).X_WG, kCullMargin, meshes ? 0.0 : kWitnessDepth);
+  if (hulls == Convex::apart) return Solids::apart;
+  if (meshes) {
+    return pieces_relation(A, at(a).X_WG, B, at(b).X_WG, kCullMargin, kWitnessDepth);
   }
-  return false;
-}
-
-bool Placement::share_a_point(int a, int b) {
-  if (world_.is_mesh(a) != world_.is_mesh(b)) return world_.is_mesh(a) ? holds_a_vertex(b, a) : holds_a_vertex(a, b);
-  return world_.is_box(a) && world_.is_box(b) && boxes_overlap(at(a).box, at(b).box);
+  return hulls == Convex::overlapping ? Solids::touching : Solids::unknown;
 }
 
 double Placement::separation(int a, int b) {

@@ -13,6 +13,7 @@
 
 #include "robot/collision.hpp"
 #include "robot/convex_apart.hpp"
+#include "robot/mesh_pieces.hpp"
 #include "robot/narrow_phase.hpp"
 #include "robot/robot_model.hpp"
 #include "robot/scene.hpp"
@@ -88,18 +89,15 @@ class Placement {
 
   /// The exact verdict on a pair: bounding volumes, then the narrow phase.
   bool collide(int a, int b);
-  /// What is certain of the convex hulls of two parts.
-  Convex hulls(int a, int b);
-  /// Whether a vertex of a mesh was found inside a primitive, or two boxes overlap by more than rounding: two such
-  /// parts collide for certain, which FCL takes longer to find out. Not found does not mean that they are apart.
-  bool share_a_point(int a, int b);
+  /// What is certain of two parts, which FCL takes longer to find out: by their convex hulls, the convex pieces of
+  /// meshes, and points that both share.
+  Solids relation(int a, int b);
   double separation(int a, int b);
   /// A lower bound of the separation from bounding volumes, m.
   double distance_bound(int a, int b);
 
  private:
   const Eigen::Isometry3d& link(int index);
-  bool holds_a_vertex(int primitive, int mesh);
 
   const CollisionWorld& world_;
   Eigen::Isometry3d X_WR_;

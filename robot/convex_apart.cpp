@@ -18,10 +18,10 @@ using Eigen::Vector3d;
 
 constexpr int kSteps = 20;
 
-/// The point of a shape that is farthest along n, in the shape's frame.
+/// The point of a solid that is farthest along n, in the solid's frame.
 struct Support {
-  const CollisionShape& owner;
   const Vector3d& n;
+  bool thorough;  ///< otherwise among few of a hull's vertices
 
   Vector3d operator()(const Box& box) const {
     return 0.5 * Vector3d(std::copysign(box.size.x(), n.x()), std::copysign(box.size.y(), n.y()),
@@ -34,10 +34,23 @@ struct Support {
     if (across > 0.0) p.head<2>() = n.head<2>() * (c.radius / across);
     return p;
   }
-  Vector3d operator()(const std::shared_ptr<const TriangleMesh>&) const {
-    const HullVertices& hull = owner.hull();
-    return hull.vertex(wide::farthest(hull.xyz.data(), hull.count, n.cast<float>().eval().data()));
+  Vector3d operator()(const HullVertices* hull) const {
+    const PaddedPoints& points = thorough || hull->few.count == 0 ? hull->all : hull->few;
+    return points.point(wide::farthest(points.xyz.data(), points.count, n.cast<float>().eval().data()));
   }
+};
+
+/// m; a solid lies within this of what its support points tell.
+double rounding_of(const ConvexSolid& solid) {
+  const auto* hull = std::get_if<const HullVertices*>(&solid.form);
+  return hull == nullptr ? 0.0 : (*hull)->rounding;
+}
+
+struct FormOf {
+  const CollisionShape& owner;
+
+  ConvexForm operator()(const std::shared_ptr<const TriangleMesh>&) const { return &owner.hull(); }
+  ConvexForm operator()(const auto& primitive) const { return primitive; }
 };
 
 /// Corners of a simplex that holds the point of the difference found nearest to the origin so far.
@@ -101,6 +114,10 @@ Vector3d nearest(Simplex& simplex) {
 
 }  // namespace
 
+ConvexSolid convex_solid(const CollisionShape& shape) {
+  return {std::visit(FormOf{shape}, shape.shape()), shape.center()};
+}
+
 bool convex_apart(const CollisionShape& a, const Eigen::Isometry3d& X_WA, const CollisionShape& b,
                   const Eigen::Isometry3d& X_WB, double margin) {
   return convex_relation(a, X_WA, b, X_WB, margin, 0.0) == Convex::apart;
@@ -108,27 +125,35 @@ bool convex_apart(const CollisionShape& a, const Eigen::Isometry3d& X_WA, const 
 
 Convex convex_relation(const CollisionShape& a, const Eigen::Isometry3d& X_WA, const CollisionShape& b,
                        const Eigen::Isometry3d& X_WB, double margin, double depth) {
-  const Eigen::Isometry3d X_AB = X_WA.inverse(Eigen::Isometry) * X_WB;
-  const double rounding = a.hull_rounding() + b.hull_rounding();
+  return convex_relation(convex_solid(a), convex_solid(b), X_WA.inverse(Eigen::Isometry) * X_WB, margin, depth);
+}
+
+Convex convex_relation(const ConvexSolid& a, const ConvexSolid& b, const Eigen::Isometry3d& X_AB, double margin,
+                       double depth) {
+  const double rounding = rounding_of(a) + rounding_of(b);
   margin += rounding;
-  const auto support = [&](const Vector3d& n) -> Vector3d {  // of the difference A - B
+  const auto support = [&](const Vector3d& n, bool thorough) -> Vector3d {
     const Vector3d turned = -(X_AB.linear().transpose() * n);
-    return std::visit(Support{a, n}, a.shape()) - X_AB * std::visit(Support{b, turned}, b.shape());
+    return std::visit(Support{n, thorough}, a.form) - X_AB * std::visit(Support{turned, thorough}, b.form);
   };
-  Vector3d v = a.center() - X_AB * b.center();
+  Vector3d v = a.center - X_AB * b.center;  // of the difference A - B
   Simplex simplex;
   for (int step = 0; step < kSteps; ++step) {
     const double length = v.norm();
     if (!(length > margin)) {
       const bool inside = simplex.size == 4 && depth > 0.0;
-      return inside && comes_to_hold_ball(simplex.corner, depth + rounding, support) ? Convex::overlapping
-                                                                                     : Convex::unknown;
+      const auto farthest = [&](const Vector3d& n) { return support(n, true); };
+      return inside && comes_to_hold_ball(simplex.corner, depth + rounding, farthest) ? Convex::overlapping
+                                                                                      : Convex::unknown;
     }
-    const Vector3d w = support(-v);
-    const double ahead = v.dot(w);
-    if (ahead > margin * length) return Convex::apart;
     // No support point is nearer than those known: v is the nearest point itself, less than margin away.
-    if (step > 0 && length * length - ahead <= 1e-9 * length * length) return Convex::unknown;
+    const auto settled = [&](double ahead) { return step > 0 && length * length - ahead <= 1e-9 * length * length; };
+    Vector3d w = support(-v, false);
+    if (v.dot(w) > margin * length || settled(v.dot(w))) {  // among few points: what does each of them say?
+      w = support(-v, true);
+      if (v.dot(w) > margin * length) return Convex::apart;
+      if (settled(v.dot(w))) return Convex::unknown;
+    }
     simplex.corner[static_cast<std::size_t>(simplex.size++)] = w;
     v = nearest(simplex);
   }

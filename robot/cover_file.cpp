@@ -20,16 +20,14 @@
 #include <type_traits>
 #include <utility>
 
-#include "robot/solid_region.hpp"
-
 namespace opponens::robot {
 
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Raised whenever sphere_tree or hull_vertices give other results or the layout changes (CoverFile.KeepsItsVersion).
-constexpr std::uint32_t kVersion = 1;
+/// Raised whenever mesh_cover gives other results or the layout changes (CoverFile.KeepsItsVersion).
+constexpr std::uint32_t kVersion = 2;
 constexpr std::string_view kMagic = "opponens cover\n";
 constexpr std::uint32_t kByteOrder = 0x01020304;  ///< numbers are stored as the processor holds them
 
@@ -82,6 +80,23 @@ T take(std::string_view& bytes) {
   return value;
 }
 
+void put(std::string& bytes, const HullVertices& hull) {
+  for (const PaddedPoints* points : {&hull.all, &hull.few}) {
+    put(bytes, points->count);
+    put(bytes, points->xyz.data(), points->xyz.size());
+  }
+  put(bytes, hull.rounding);
+}
+
+void take(std::string_view& bytes, HullVertices& hull) {
+  for (PaddedPoints* points : {&hull.all, &hull.few}) {
+    points->count = take<int>(bytes);
+    points->xyz.resize(3 * static_cast<std::size_t>(points->count));
+    take(bytes, points->xyz.data(), points->xyz.size());
+  }
+  hull.rounding = take<double>(bytes);
+}
+
 /// What a cover depends on, hashed.
 Digest key_of(const TriangleMesh& mesh, const SphereTreeSettings& settings) {
   std::string bytes(kMagic);
@@ -96,26 +111,25 @@ Digest key_of(const TriangleMesh& mesh, const SphereTreeSettings& settings) {
   return sha256(bytes);
 }
 
-/// Magic, key, counts of nodes and (padded) hull vertices, nodes, hull, and the SHA-256 of all that.
+/// Magic, key, count of nodes, nodes, their pieces, hull, and the SHA-256 of all that.
 std::string encode(const Digest& key, const MeshCover& cover) {
   std::string bytes(kMagic);
   bytes += view(key);
   put(bytes, static_cast<std::uint64_t>(cover.tree.nodes.size()));
-  put(bytes, static_cast<std::uint64_t>(cover.hull.count));
   for (const SphereTree::Node& node : cover.tree.nodes) {
     put(bytes, node.center.data(), 3);
     put(bytes, node.radius);
     put(bytes, node.first_child);
     put(bytes, node.children);
   }
-  put(bytes, cover.hull.xyz.data(), cover.hull.xyz.size());
-  put(bytes, cover.hull.rounding);
+  for (const HullVertices& piece : cover.pieces) put(bytes, piece);
+  put(bytes, cover.hull);
   return bytes += view(sha256(bytes));
 }
 
 /// nullopt unless the bytes are what encode() made of this key: with the right sum, the counts are right as well.
 std::optional<MeshCover> decode(std::string_view bytes, const Digest& key) {
-  const std::size_t header = kMagic.size() + key.size() + 2 * sizeof(std::uint64_t);
+  const std::size_t header = kMagic.size() + key.size() + sizeof(std::uint64_t);
   if (bytes.size() < header + sizeof(Digest)) return std::nullopt;
   const std::string_view sum = bytes.substr(bytes.size() - sizeof(Digest));
   bytes.remove_suffix(sizeof(Digest));
@@ -124,16 +138,15 @@ std::optional<MeshCover> decode(std::string_view bytes, const Digest& key) {
   bytes.remove_prefix(kMagic.size() + key.size());
   MeshCover cover;
   cover.tree.nodes.resize(take<std::uint64_t>(bytes));
-  cover.hull.count = static_cast<int>(take<std::uint64_t>(bytes));
   for (SphereTree::Node& node : cover.tree.nodes) {
     take(bytes, node.center.data(), 3);
     node.radius = take<double>(bytes);
     node.first_child = take<int>(bytes);
     node.children = take<int>(bytes);
   }
-  cover.hull.xyz.resize(3 * static_cast<std::size_t>(cover.hull.count));
-  take(bytes, cover.hull.xyz.data(), cover.hull.xyz.size());
-  cover.hull.rounding = take<double>(bytes);
+  cover.pieces.resize(cover.tree.nodes.size());
+  for (HullVertices& piece : cover.pieces) take(bytes, piece);
+  take(bytes, cover.hull);
   return cover;
 }
 
@@ -181,11 +194,12 @@ using Mesh = std::shared_ptr<const TriangleMesh>;
 void cover(std::vector<Geometry>& geometry, const fs::path& folder, std::map<Mesh, Mesh>& covered) {
   for (Geometry& one : geometry) {
     auto* const mesh = std::get_if<Mesh>(&one.shape);
-    if (mesh == nullptr || *mesh == nullptr || (*mesh)->cover != nullptr || (*mesh)->triangles.cols() == 0) continue;
+    if (mesh == nullptr || *mesh == nullptr || (*mesh)->cover.get() != nullptr || (*mesh)->triangles.cols() == 0)
+      continue;
     Mesh& known = covered[*mesh];
     if (known == nullptr) {
       auto copy = std::make_shared<TriangleMesh>(**mesh);
-      copy->cover = cached_cover(*copy, folder);
+      copy->cover.keep(cached_cover(*copy, folder));
       known = std::move(copy);
     }
     *mesh = known;
@@ -193,8 +207,6 @@ void cover(std::vector<Geometry>& geometry, const fs::path& folder, std::map<Mes
 }
 
 }  // namespace
-
-MeshCover mesh_cover(const TriangleMesh& mesh) { return {sphere_tree(mesh, SolidRegion(mesh)), hull_vertices(mesh)}; }
 
 RobotDescription with_covers(RobotDescription robot, const fs::path& folder) {
   std::map<Mesh, Mesh> covered;

@@ -4,22 +4,11 @@
 
 #include <filesystem>
 
-#include "robot/convex_hull.hpp"
-#include "robot/geometry.hpp"
+#include "robot/mesh_cover.hpp"
 #include "robot/robot_model.hpp"
 #include "robot/scene.hpp"
-#include "robot/sphere_tree.hpp"
 
 namespace opponens::robot {
-
-/// What the collision checker makes of a mesh before its first question.
-struct MeshCover {
-  SphereTree tree;
-  HullVertices hull;
-};
-
-/// Of vertices and triangles alone. About 2 s per million triangles.
-MeshCover mesh_cover(const TriangleMesh& mesh);
 
 /// The same description with the covers of all its meshes, which save the collision checker making them. They are read
 /// from the folder where they were made before, else made and written there. The folder only saves time:

@@ -91,11 +91,7 @@ struct TriangulateVisitor {
     mesh.source = "cylinder";
     return mesh;
   }
-  TriangleMesh operator()(const std::shared_ptr<const TriangleMesh>& mesh) const {
-    TriangleMesh copy = *mesh;
-    copy.cover = nullptr;  // the copy's owner may change it
-    return copy;
-  }
+  TriangleMesh operator()(const std::shared_ptr<const TriangleMesh>& mesh) const { return *mesh; }
 };
 
 /// Component number of every vertex (-1: in no triangle), numbered by their first vertex.

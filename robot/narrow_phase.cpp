@@ -12,17 +12,16 @@
 #include <utility>
 #include <vector>
 
-#include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/geometry/shape/box.h>
 #include <fcl/geometry/shape/cylinder.h>
 #include <fcl/geometry/shape/sphere.h>
-#include <fcl/math/bv/OBBRSS.h>
 #include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/distance.h>
 
 #include "core/require.hpp"
 #include "robot/convex_distance.hpp"
-#include "robot/cover_file.hpp"
+#include "robot/fcl_mesh.hpp"
+#include "robot/mesh_cover.hpp"
 #include "robot/solid_region.hpp"
 
 namespace opponens::robot {
@@ -33,22 +32,6 @@ constexpr double kLeastSeparation = 1e-9;  ///< m
 
 constexpr double kBoundTolerance = 1e-3;  ///< m
 
-std::shared_ptr<fcl::CollisionGeometryd> fcl_mesh(const TriangleMesh& mesh) {
-  auto model = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
-  std::vector<fcl::Vector3d> vertices;
-  std::vector<fcl::Triangle> triangles;
-  for (Eigen::Index i = 0; i < mesh.vertices.cols(); ++i) vertices.emplace_back(mesh.vertices.col(i));
-  for (Eigen::Index i = 0; i < mesh.triangles.cols(); ++i) {
-    const auto corner = [&](int k) { return static_cast<std::size_t>(mesh.triangles(k, i)); };
-    triangles.emplace_back(corner(0), corner(1), corner(2));
-  }
-  model->beginModel(static_cast<int>(triangles.size()), static_cast<int>(vertices.size()));
-  const bool added = model->addSubModel(vertices, triangles) == fcl::BVH_OK && model->endModel() == fcl::BVH_OK;
-  require(added, [&] { return "collision: FCL refuses the mesh " + mesh.source; });
-  model->computeLocalAABB();
-  return model;
-}
-
 }  // namespace
 
 struct CollisionShape::Data {
@@ -56,6 +39,7 @@ struct CollisionShape::Data {
   Bounds bounds;
   std::shared_ptr<const TriangleMesh> mesh;            ///< null for a primitive
   std::shared_ptr<fcl::CollisionGeometryd> primitive;  ///< null for a mesh
+  std::unique_ptr<const FclMeshes> fcl;                ///< null for a primitive
 
   /// Of a mesh. Both take as long as reading it from its file, and many meshes are never near enough to another body to
   /// be asked: they are made when they are needed first.
@@ -63,23 +47,15 @@ struct CollisionShape::Data {
     std::call_once(region_once, [this] { region_made = std::make_unique<const SolidRegion>(*mesh); });
     return *region_made;
   }
-  const fcl::CollisionGeometryd* geometry() const {
-    if (mesh == nullptr) return primitive.get();
-    std::call_once(fcl_once, [this] { fcl_made = fcl_mesh(*mesh); });
-    return fcl_made.get();
-  }
+  const fcl::CollisionGeometryd* geometry() const { return mesh == nullptr ? primitive.get() : fcl->whole(); }
 
-  const SphereTree& cover() const {
-    if (mesh != nullptr && mesh->cover != nullptr) return mesh->cover->tree;
-    std::call_once(cover_once,
-                   [this] { cover_made = mesh != nullptr ? sphere_tree(*mesh, region()) : sphere_tree(shape); });
+  /// Of a primitive a tree alone.
+  const MeshCover& cover() const {
+    if (mesh != nullptr && mesh->cover.get() != nullptr) return *mesh->cover.get();
+    std::call_once(cover_once, [this] {
+      cover_made = mesh != nullptr ? mesh_cover(*mesh, region()) : MeshCover{sphere_tree(shape), {}, {}};
+    });
     return cover_made;
-  }
-
-  const HullVertices& hull() const {
-    if (mesh->cover != nullptr) return mesh->cover->hull;
-    std::call_once(hull_once, [this] { hull_made = hull_vertices(*mesh); });
-    return hull_made;
   }
 
   bool contains(const Eigen::Vector3d& p) const {
@@ -93,13 +69,9 @@ struct CollisionShape::Data {
 
  private:
   mutable std::once_flag region_once;
-  mutable std::once_flag fcl_once;
   mutable std::once_flag cover_once;
-  mutable std::once_flag hull_once;
-  mutable HullVertices hull_made;
-  mutable SphereTree cover_made;
+  mutable MeshCover cover_made;
   mutable std::unique_ptr<const SolidRegion> region_made;
-  mutable std::shared_ptr<fcl::CollisionGeometryd> fcl_made;
 };
 
 namespace {
@@ -143,18 +115,6 @@ struct BoundsOf {
   }
 };
 
-/// A necessary sign that a cover belongs to a mesh: its root ball contains the mesh. Copies of a mesh that were changed
-/// afterwards fail it.
-bool may_cover(const MeshCover& cover, const TriangleMesh& mesh) {
-  const SphereTree::Node& root = cover.tree.nodes.at(0);
-  for (const auto& triangle : mesh.triangles.colwise()) {
-    for (int k = 0; k < 3; ++k) {
-      if ((mesh.vertices.col(triangle[k]) - root.center).norm() > root.radius * (1.0 + 1e-9)) return false;
-    }
-  }
-  return true;
-}
-
 std::shared_ptr<const CollisionShape::Data> make_data(const Shape& shape) {
   auto data = std::make_shared<CollisionShape::Data>();
   data->shape = shape;
@@ -164,8 +124,7 @@ std::shared_ptr<const CollisionShape::Data> make_data(const Shape& shape) {
   if (data->primitive != nullptr) data->primitive->computeLocalAABB();
   if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&shape)) {
     data->mesh = *mesh;
-    require((*mesh)->cover == nullptr || may_cover(*(*mesh)->cover, **mesh),
-            [&] { return "collision: the mesh " + (*mesh)->source + " carries the cover of another"; });
+    data->fcl = std::make_unique<const FclMeshes>(**mesh);
   }
   return data;
 }
@@ -216,13 +175,18 @@ std::optional<double> sphere_mesh_gap(const CollisionShape& a, const Eigen::Isom
   return std::nullopt;
 }
 
+bool fcl_meet(const fcl::CollisionGeometryd* a, const Eigen::Isometry3d& X_WA, const fcl::CollisionGeometryd* b,
+              const Eigen::Isometry3d& X_WB) {
+  const fcl::CollisionRequestd request(1, false);
+  fcl::CollisionResultd result;
+  fcl::collide(a, X_WA, b, X_WB, request, result);
+  return result.isCollision();
+}
+
 bool surfaces_meet(const CollisionShape& a, const Eigen::Isometry3d& X_WA, const CollisionShape& b,
                    const Eigen::Isometry3d& X_WB) {
   if (const std::optional<double> gap = sphere_mesh_gap(a, X_WA, b, X_WB)) return *gap <= 0.0;
-  const fcl::CollisionRequestd request(1, false);
-  fcl::CollisionResultd result;
-  fcl::collide(a.data().geometry(), X_WA, b.data().geometry(), X_WB, request, result);
-  return result.isCollision();
+  return fcl_meet(a.data().geometry(), X_WA, b.data().geometry(), X_WB);
 }
 
 /// Distance of a primitive's surface to a mesh's, within 1e-7 below.
@@ -248,14 +212,14 @@ CollisionShape::CollisionShape(const Shape& shape) {
   bounds_ = data_->bounds;
 }
 
-const SphereTree& CollisionShape::cover() const { return data_->cover(); }
+const SphereTree& CollisionShape::cover() const { return data_->cover().tree; }
+
+const std::vector<HullVertices>& CollisionShape::pieces() const { return data_->cover().pieces; }
 
 const HullVertices& CollisionShape::hull() const {
   require(data_->mesh != nullptr, "CollisionShape: only a mesh has hull vertices");
-  return data_->hull();
+  return data_->cover().hull;
 }
-
-double CollisionShape::hull_rounding() const { return data_->mesh == nullptr ? 0.0 : data_->hull().rounding; }
 
 const Shape& CollisionShape::shape() const { return data_->shape; }
 
@@ -263,8 +227,17 @@ bool CollisionShape::open_surface() const { return data_->mesh != nullptr && dat
 
 bool intersect(const CollisionShape& a, const Eigen::Isometry3d& X_WA, const CollisionShape& b,
                const Eigen::Isometry3d& X_WB) {
-  if (surfaces_meet(a, X_WA, b, X_WB)) return true;
+  return surfaces_meet(a, X_WA, b, X_WB) || contained(a, X_WA, b, X_WB);
+}
+
+bool contained(const CollisionShape& a, const Eigen::Isometry3d& X_WA, const CollisionShape& b,
+               const Eigen::Isometry3d& X_WB) {
   return holds_a_seed(a, X_WA, b, X_WB) || holds_a_seed(b, X_WB, a, X_WA);
+}
+
+bool leaves_meet(const CollisionShape& a, const Eigen::Isometry3d& X_WA, int leaf_a, const CollisionShape& b,
+                 const Eigen::Isometry3d& X_WB, int leaf_b) {
+  return fcl_meet(a.data().fcl->leaf(a.cover(), leaf_a), X_WA, b.data().fcl->leaf(b.cover(), leaf_b), X_WB);
 }
 
 double separation(const CollisionShape& a, const Eigen::Isometry3d& X_WA, const CollisionShape& b,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -33,8 +34,8 @@ class CollisionShape {
   const SphereTree& cover() const;
   /// Vertices of a mesh's convex hull; throws std::invalid_argument for a primitive.
   const HullVertices& hull() const;
-  /// m; the hull of the shape lies within this of what hull() says.
-  double hull_rounding() const;
+  /// [nodes of cover()] of a mesh, convex hulls that contain its surface together (MeshCover); of a primitive none.
+  const std::vector<HullVertices>& pieces() const;
   const Shape& shape() const;
 
   /// A mesh with a component that is not closed: that component is a surface without an inside.
@@ -56,12 +57,25 @@ class CollisionShape {
 bool intersect(const CollisionShape& a, const Eigen::Isometry3d& X_WA, const CollisionShape& b,
                const Eigen::Isometry3d& X_WB);
 
+/// Its last part: whether one contains the other, after their surfaces were found apart.
+bool contained(const CollisionShape& a, const Eigen::Isometry3d& X_WA, const CollisionShape& b,
+               const Eigen::Isometry3d& X_WB);
+
+/// Its first part for two meshes, of the triangles in leaves of their covers (and some beside): FCL's verdict on each
+/// pair of triangles is the same. Throws nothing but what FCL refuses.
+bool leaves_meet(const CollisionShape& a, const Eigen::Isometry3d& X_WA, int leaf_a, const CollisionShape& b,
+                 const Eigen::Isometry3d& X_WB, int leaf_b);
+
 /// Distance between two solids, m; 0 when they intersect, and at least 1e-9 when they do not (a distance can round to
 /// nothing where the collision test still tells the two apart). With a primitive: a proven lower bound within 1e-7 m of
 /// the distance (convex_distance; fcl::distance was seen to err by 24 mm for cylinders). A sphere and a mesh: exact.
 /// Two meshes: fcl::distance, which is exact for triangles.
 double separation(const CollisionShape& a, const Eigen::Isometry3d& X_WA, const CollisionShape& b,
                   const Eigen::Isometry3d& X_WB);
+
+/// m. What is not FCL must find two solids further apart than this to settle that they are: above the tolerance of
+/// FCL's tests (1e-6), so that the verdict is FCL's, with or without it.
+inline constexpr double kCullMargin = 2e-6;
 
 /// A box with its centre and orientation in the world.
 struct OrientedBox {

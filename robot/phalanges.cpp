@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 
 constexpr double kParallel = 0.9;    // cosine of 25 deg
 constexpr double kUneven = 1.5;      // one way further than the other by this factor tells where a finger closes
-constexpr double kShortest = 0.003;  // m, a shorter bone is a joint's housing
+constexpr double kShortestBone = 0.003;  // m, a shorter bone is a joint's housing
 
 /// A body of a finger's chain, from its joint to the next one.
 struct Segment {
@@ -131,7 +131,7 @@ Phalanx phalanx_of(const Segment& segment, const Segment& last, double sense) {
     phalanx.side = sense * last.axis.cross(phalanx.bone).normalized();
   }
   const double length = phalanx.bone.norm();
-  if (length < kShortest) return phalanx;
+  if (length < kShortestBone) return phalanx;
   phalanx.bone /= length;
   const double base = phalanx.bone.dot(segment.origin);
   const Eigen::Vector2d extent = extent_along(phalanx.body.vertices, phalanx.bone);
@@ -230,7 +230,7 @@ std::vector<FingerBones> finger_bones(const RobotModel& robot, const std::vector
       if (!bends || segment.body.vertices.cols() == 0) continue;
       if (last.type == JointType::prismatic && &segment != &last) continue;
       Phalanx phalanx = phalanx_of(segment, last, sense);
-      if (phalanx.to - phalanx.from >= kShortest) finger.phalanges.push_back(std::move(phalanx));
+      if (phalanx.to - phalanx.from >= kShortestBone) finger.phalanges.push_back(std::move(phalanx));
     }
     if (finger.phalanges.empty()) finger.notes.push_back("finger '" + finger.name + "': no geometry to put points on");
     result.push_back(std::move(finger));

@@ -30,7 +30,6 @@ Shape scaled_shape(const Shape& shape, double factor) {
   }
   TriangleMesh mesh = *std::get<std::shared_ptr<const TriangleMesh>>(shape);
   mesh.vertices *= factor;
-  mesh.cover = nullptr;  // it is of the other size
   return std::make_shared<const TriangleMesh>(std::move(mesh));
 }
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -12,6 +11,7 @@
 
 #include "core/require.hpp"
 #include "robot/mesh.hpp"
+#include "robot/smallest_ball.hpp"
 #include "robot/solid_region.hpp"
 
 namespace opponens::robot {
@@ -22,8 +22,6 @@ using Eigen::Vector3d;
 
 /// Radii are enlarged by this share, far above the rounding of distances in double precision.
 constexpr double kRounding = 1e-12;
-constexpr double kLooseness = 1e-3;   ///< share by which a ball may be larger than the smallest
-constexpr int kMostPivots = 32;       ///< points that may be added to a ball's support, one after the other
 constexpr int kBranching = 4;         ///< children per node wanted
 constexpr double kSliceLength = 0.5;  ///< of a cylinder's slices at most, in radii
 
@@ -132,87 +130,10 @@ class Half {
   Cell half_;
 };
 
-/// The point of the cell farthest from a center, and its squared distance.
-std::pair<const Vector3d*, double> farthest(const Cell& cell, const Vector3d& center) {
-  std::pair<const Vector3d*, double> far{nullptr, -1.0};
-  for (const auto* points : {&cell.points, &cell.filled}) {
-    for (const Vector3d& p : *points) {
-      const double squared = (p - center).squaredNorm();
-      if (squared > far.second) far = {&p, squared};
-    }
-  }
-  return far;
-}
-
-/// Up to four points and the smallest ball with all of them on its surface.
-struct Support {
-  std::array<Vector3d, 4> points;
-  int count = 0;
-  Vector3d center = Vector3d::Zero();
-  double squared = std::numeric_limits<double>::infinity();  ///< radius, m^2
-
-  void add(const Vector3d& p) { points[static_cast<std::size_t>(count++)] = p; }
-
-  /// The center is points[0] + sum_i l_i v_i with v_i = points[i] - points[0], where 2 sum_j (v_i v_j) l_j = v_i v_i.
-  /// NaN or something far away when the points have no such ball.
-  void circumscribe() {
-    using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>;
-    using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1>;
-    Small v(3, count - 1);
-    for (int i = 1; i < count; ++i) v.col(i - 1) = points[static_cast<std::size_t>(i)] - points[0];
-    Vector3d offset = Vector3d::Zero();
-    if (count == 2) offset = 0.5 * v.col(0);
-    if (count > 2) {
-      const Small gram = v.transpose() * v;
-      const Column right = 0.5 * gram.diagonal();
-      offset = v * Column(gram.ldlt().solve(right));
-    }
-    center = points[0] + offset;
-    squared = offset.squaredNorm();
-  }
-};
-
-/// The smallest ball around the points of another and one more, which lies outside that and so on the surface of this:
-/// the smallest of the balls through it and up to three of the others that contains all. Unchanged when rounding leaves
-/// none.
-Support pivot(const Support& old, const Vector3d& p) {
-  Support best;
-  for (unsigned chosen = 0; chosen < 1U << old.count; ++chosen) {
-    if (std::popcount(chosen) > 3) continue;
-    Support ball;
-    ball.add(p);
-    for (int i = 0; i < old.count; ++i) {
-      if ((chosen >> i & 1U) != 0) ball.add(old.points[static_cast<std::size_t>(i)]);
-    }
-    ball.circumscribe();
-    if (!(ball.squared < best.squared)) continue;
-    const bool contains = std::all_of(old.points.begin(), old.points.begin() + old.count, [&](const Vector3d& other) {
-      return (other - ball.center).squaredNorm() <= ball.squared * (1.0 + 1e-9);
-    });
-    if (contains) best = ball;
-  }
-  return best.count > 0 ? best : old;
-}
-
-/// A ball around all points of a cell, nearly the smallest: that of a few of them, to which the farthest is added again
-/// and again (Gaertner 1999, "Fast and robust smallest enclosing balls", with the points' plain distances at the end).
+/// A ball around all points of a cell, nearly the smallest.
 SphereTree::Node ball_of(const Cell& cell) {
-  SphereTree::Node ball{cell.box.center(), 0.0, 0, 0};
-  double least = std::numeric_limits<double>::infinity();
-  Support support;
-  support.center = ball.center;
-  support.squared = 0.0;
-  for (int i = 0; i < kMostPivots; ++i) {
-    const auto [far, squared] = farthest(cell, support.center);
-    if (squared < least) {
-      least = squared;
-      ball.center = support.center;
-    }
-    if (squared <= support.squared * (1.0 + 2.0 * kLooseness)) break;
-    support = pivot(support, *far);
-  }
-  ball.radius = std::sqrt(least) * (1.0 + kRounding);
-  return ball;
+  const EnclosingBall ball = enclosing_ball(cell.points, cell.filled);
+  return {ball.center, ball.radius * (1.0 + kRounding), 0, 0};
 }
 
 /// Binary tree of cells while it is made.
@@ -259,6 +180,7 @@ std::vector<Branch> grow(Branch root, const Inside& asked, const SphereTreeSetti
     if (branches[parent].ball.radius <= settings.radius) break;
     std::array<Branch, 2> halves = divide(branches[parent].cell, inside);
     leaves.erase(largest);
+    if (halves[0].cell.empty() && halves[1].cell.empty()) continue;  // coordinates too large to be divided
     branches[parent].cell = {};
     for (std::size_t side = 0; side < 2; ++side) {
       if (halves[side].cell.empty()) continue;
@@ -293,26 +215,30 @@ std::vector<int> gathered(const std::vector<Branch>& branches, int index) {
   return children;
 }
 
-SphereTree flatten(const std::vector<Branch>& branches) {
-  SphereTree tree;
+/// Takes the points from the leaves.
+CellTree flatten(std::vector<Branch>& branches) {
+  CellTree made;
+  std::vector<SphereTree::Node>& nodes = made.tree.nodes;
   std::vector<int> source{0};
-  tree.nodes.push_back(branches[0].ball);
-  for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
-    const Branch& branch = branches[static_cast<std::size_t>(source[i])];
-    if (branch.children == std::array<int, 2>{-1, -1}) continue;
-    tree.nodes[i].first_child = static_cast<int>(tree.nodes.size());
+  nodes.push_back(branches[0].ball);
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    Branch& branch = branches[static_cast<std::size_t>(source[i])];
+    std::vector<Vector3d>& points = made.points.emplace_back();
+    if (branch.children == std::array<int, 2>{-1, -1}) {
+      points = std::move(branch.cell.points);
+      continue;
+    }
+    nodes[i].first_child = static_cast<int>(nodes.size());
     for (const int child : gathered(branches, source[i])) {
-      tree.nodes.push_back(branches[static_cast<std::size_t>(child)].ball);
+      nodes.push_back(branches[static_cast<std::size_t>(child)].ball);
       source.push_back(child);
     }
-    tree.nodes[i].children = static_cast<int>(tree.nodes.size()) - tree.nodes[i].first_child;
+    nodes[i].children = static_cast<int>(nodes.size()) - nodes[i].first_child;
   }
-  return tree;
+  return made;
 }
 
-}  // namespace
-
-SphereTree sphere_tree(const TriangleMesh& surface, const Inside& inside, const SphereTreeSettings& settings) {
+CellTree cell_tree(const TriangleMesh& surface, const Inside& inside, const SphereTreeSettings& settings) {
   require(surface.triangles.cols() > 0, "sphere_tree: a surface without triangles");
   require(settings.leaves >= 1 && settings.radius > 0.0, "sphere_tree: leaves must be at least 1, radius positive");
   Branch root;
@@ -330,10 +256,9 @@ SphereTree sphere_tree(const TriangleMesh& surface, const Inside& inside, const 
     }
   }
   root.ball = ball_of(root.cell);  // the solid lies in the convex hull of its surface
-  return flatten(grow(std::move(root), inside, settings));
+  std::vector<Branch> branches = grow(std::move(root), inside, settings);
+  return flatten(branches);
 }
-
-namespace {
 
 /// Balls on the axis, each around a slice: they fit the side closely and stick out at the ends.
 SphereTree slices(const Cylinder& cylinder, double longest) {
@@ -358,9 +283,13 @@ SphereTree slices(const Cylinder& cylinder, double longest) {
 
 }  // namespace
 
-SphereTree sphere_tree(const TriangleMesh& mesh, const SolidRegion& region, const SphereTreeSettings& settings) {
-  return sphere_tree(
+CellTree cell_tree(const TriangleMesh& mesh, const SolidRegion& region, const SphereTreeSettings& settings) {
+  return cell_tree(
       mesh, [&](const Vector3d& p) { return region.touches(p); }, settings);
+}
+
+SphereTree sphere_tree(const TriangleMesh& surface, const Inside& inside, const SphereTreeSettings& settings) {
+  return cell_tree(surface, inside, settings).tree;
 }
 
 SphereTree sphere_tree(const Shape& shape, const SphereTreeSettings& settings) {
@@ -369,7 +298,7 @@ SphereTree sphere_tree(const Shape& shape, const SphereTreeSettings& settings) {
     return slices(*cylinder, std::max(kSliceLength * cylinder->radius, cylinder->length / settings.leaves));
   }
   if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&shape)) {
-    return sphere_tree(**mesh, SolidRegion(**mesh), settings);
+    return cell_tree(**mesh, SolidRegion(**mesh), settings).tree;
   }
   // A box is convex and fills its bounding box.
   return sphere_tree(

@@ -45,7 +45,16 @@ SphereTree sphere_tree(const TriangleMesh& surface, const Inside& inside, const 
 
 class SolidRegion;
 
+/// A sphere tree and what it was made of.
+struct CellTree {
+  SphereTree tree;
+  /// [nodes] m; of a leaf the corners of the surface's triangles clipped to its cell, of other nodes none. The convex
+  /// hulls of the leaves' points contain the surface together, and those of the leaves below a node its part in the
+  /// node's ball.
+  std::vector<std::vector<Eigen::Vector3d>> points;
+};
+
 /// That of a mesh whose region is known already.
-SphereTree sphere_tree(const TriangleMesh& mesh, const SolidRegion& region, const SphereTreeSettings& settings = {});
+CellTree cell_tree(const TriangleMesh& mesh, const SolidRegion& region, const SphereTreeSettings& settings = {});
 
 }  // namespace opponens::robot

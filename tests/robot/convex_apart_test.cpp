@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/convex_apart.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <vector>
@@ -24,7 +25,7 @@ using Eigen::Vector3d;
 /// How much farther the mesh reaches along unit n than the hull's vertices, m.
 double missing(const TriangleMesh& mesh, const HullVertices& hull, const Vector3d& n) {
   double far = -1e300;
-  for (int i = 0; i < hull.count; ++i) far = std::max(far, n.dot(hull.vertex(i)));
+  for (int i = 0; i < hull.all.count; ++i) far = std::max(far, n.dot(hull.all.point(i)));
   return (n.transpose() * mesh.vertices).maxCoeff() - far;
 }
 
@@ -65,8 +66,8 @@ TEST(HullVertices, ReachAsFarAsTheMeshInEveryDirection) {
   const std::vector<TriangleMesh> all = meshes();
   for (std::size_t m = 0; m < all.size(); ++m) {
     const HullVertices hull = hull_vertices(all[m]);
-    EXPECT_EQ(hull.count % 8, 0);
-    EXPECT_EQ(hull.xyz.size(), 3U * static_cast<std::size_t>(hull.count));
+    EXPECT_EQ(hull.all.count % 8, 0);
+    EXPECT_EQ(hull.all.xyz.size(), 3U * static_cast<std::size_t>(hull.all.count));
     for (int i = 0; i < 2000; ++i) {
       const Vector3d n = random_direction(rng);
       const double lack = missing(all[m], hull, n);
@@ -79,9 +80,9 @@ TEST(HullVertices, ReachAsFarAsTheMeshInEveryDirection) {
 TEST(HullVertices, AVertexLessWouldBeNoticed) {
   const TriangleMesh box = triangulate(Box{{0.1, 0.2, 0.3}});
   HullVertices hull = hull_vertices(box);
-  ASSERT_EQ(hull.count, 8);
-  EXPECT_LE(missing(box, hull, Vector3d(hull.vertex(0)).normalized()), hull.rounding);
-  for (const std::size_t i : {0, 8, 16}) hull.xyz[i] = hull.xyz[i + 1];
+  ASSERT_EQ(hull.all.count, 8);
+  EXPECT_LE(missing(box, hull, hull.all.point(0).normalized()), hull.rounding);
+  for (const std::size_t i : {0, 8, 16}) hull.all.xyz[i] = hull.all.xyz[i + 1];
   Rng rng(3);
   int noticed = 0;
   for (int i = 0; i < 2000; ++i) noticed += missing(box, hull, random_direction(rng)) > hull.rounding ? 1 : 0;
@@ -89,10 +90,41 @@ TEST(HullVertices, AVertexLessWouldBeNoticed) {
 }
 
 TEST(HullVertices, InnerVerticesAreLeftOut) {
-  EXPECT_LT(hull_vertices(meshes()[0]).count, 200);
+  EXPECT_LT(hull_vertices(meshes()[0]).all.count, 200);
   // Of a torus, the inner half of the tube.
   const TriangleMesh ring = torus(0.1, 0.02);
-  EXPECT_LE(hull_vertices(ring).count, static_cast<int>(ring.vertices.cols()) * 6 / 10);
+  EXPECT_LE(hull_vertices(ring).all.count, static_cast<int>(ring.vertices.cols()) * 6 / 10);
+}
+
+TEST(HullVertices, OfAPlaneItsOutline) {
+  // A disc of points, tilted: about the square root of them are on its rim.
+  Rng rng(7);
+  const Isometry3d X = random_pose(0.3, rng);
+  Eigen::Matrix3Xd disc(3, 2000);
+  for (auto p : disc.colwise()) {
+    const double angle = rng.uniform(0, 6.283);
+    p = X * (0.1 * std::sqrt(rng.uniform()) * Vector3d(std::cos(angle), std::sin(angle), 0.0));
+  }
+  const std::vector<Eigen::Index> outline = hull_indices(disc);
+  EXPECT_LT(outline.size(), 100U);
+  EXPECT_TRUE(std::is_sorted(outline.begin(), outline.end()));
+  for (int i = 0; i < 1000; ++i) {
+    const Vector3d n = random_direction(rng);
+    EXPECT_NEAR((n.transpose() * disc(Eigen::all, outline)).maxCoeff(), (n.transpose() * disc).maxCoeff(), 1e-12);
+  }
+}
+
+TEST(HullVertices, TheFewAreSomeOfThem) {
+  const HullVertices ball = hull_vertices(triangulate(Sphere{0.2}, 48));
+  ASSERT_GT(ball.few.count, 0);
+  EXPECT_LT(ball.few.count, ball.all.count / 4);
+  for (int i = 0; i < ball.few.count; ++i) {
+    bool known = false;
+    for (int k = 0; k < ball.all.count; ++k) known |= ball.few.point(i) == ball.all.point(k);
+    EXPECT_TRUE(known) << i;
+  }
+  EXPECT_EQ(hull_vertices(triangulate(Box{{1, 1, 1}})).few.count, 0);
+  EXPECT_THROW(hull_vertices(Eigen::Matrix3Xd(3, 0)), std::invalid_argument);
 }
 
 /// Two convex shapes near each other.
