@@ -198,6 +198,33 @@ bodies:
             std::string::npos);
 }
 
+TEST_F(ForeignScenes, MeshesStayInTheirPackage) {
+  write(kTetrahedron, "package/t.obj");
+  write(kTetrahedron, "secret.obj");
+  fs::create_symlink(folder_ / "secret.obj", folder_ / "package/out.obj");
+  fs::create_symlink("t.obj", folder_ / "package/same.obj");
+  const auto scene = [](const std::string& uri) {
+    return "world: {collision_objects: [{id: can, meshes: [{resource: '" + uri +
+           "'}], mesh_poses: [{position: [1, 0, 0], orientation: [0, 0, 0, 1]}]}]}";
+  };
+  const fs::path mine = write("name: mine\nimport: moveit.yaml\npackages: {things: package}\n", "mine.yaml");
+  write(scene("package://things/same.obj"), "moveit.yaml");
+  EXPECT_EQ(load_scene(mine).bodies.size(), 1U);
+  for (const std::string uri : {"package://things/../secret.obj", "package://things/out.obj"}) {
+    write(scene(uri), "moveit.yaml");
+    try {
+      load_scene(mine);
+      ADD_FAILURE() << "accepted " << uri;
+    } catch (const InputError& error) {
+      const std::string message = error.what();
+      EXPECT_NE(message.find("meshes[0].resource: '" + uri + "' leaves its package"), std::string::npos) << message;
+    }
+  }
+  // A package without a path is looked for above the scene's file, as for a URDF.
+  write(scene("package://package/t.obj"), "moveit.yaml");
+  EXPECT_EQ(load_scene(folder_ / "moveit.yaml").bodies.size(), 1U);
+}
+
 TEST_F(ForeignScenes, MistakesNameTheElement) {
   const auto object = [](const std::string& content) {
     return "world:\n  collision_objects:\n    - id: a\n" + content;
@@ -233,7 +260,7 @@ TEST_F(ForeignScenes, MistakesNameTheElement) {
       {posed("{position: [0, 0, 0], orientation: {x: 0, y: 0, z: 0}}"), "has no key 'w'"},
       {object("      operation: remove\n"), "operation: expected add (0), found 'remove'"},
       {mesh("{resource: 'package://p/../../secret.stl'}"),
-       "'package://p/../../secret.stl' lies outside of its package"},
+       "meshes[0].resource: 'package://p/../../secret.stl' leaves its package"},
       {mesh("{resource: 'package://p/a.stl'}"), "package 'p' has no path"},
       {mesh("{resource: absent.stl}"), "absent.stl: no such file"},
       {mesh("{vertices: [[0, 0, 0]], triangles: [[0, 0, 1]]}"), "expected the indices of three of the 1 vertices"},
