@@ -48,7 +48,12 @@ std::optional<Shape> ShapeReader::mesh(const urdf::Mesh& mesh, const std::string
     return std::nullopt;
   }
   auto& entry = cache_[{place.path.string(), scale.x(), scale.y(), scale.z()}];
-  if (!entry) entry = load_mesh(place.path, scale);
+  if (entry) return entry;
+  try {
+    entry = load_mesh(place.path, scale);
+  } catch (const InputError& error) {
+    fail_urdf(file_, "link '" + link + "': " + error.what());
+  }
   return entry;
 }
 
