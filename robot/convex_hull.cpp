@@ -2,49 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/convex_hull.hpp"
 
-#include <cstdio>
 #include <limits>
-#include <memory>
-#include <optional>
 
-extern "C" {
-#include <libqhull_r/qhull_ra.h>
-}
+#include "robot/quickhull.hpp"
 
 namespace opponens::robot {
 
 namespace {
 
 constexpr int kPadding = 8;
-
-struct CloseFile {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
-
-/// Indices of the hull's vertices; nullopt when qhull finds no volume.
-std::optional<std::vector<Eigen::Index>> hull_indices(const Eigen::Matrix3Xd& points) {
-  if (points.cols() < 4) return std::nullopt;
-  Eigen::Matrix3Xd copy = points;
-  const std::unique_ptr<std::FILE, CloseFile> sink(std::fopen("/dev/null", "w"));  // qhull reports flat sets at length
-  qhT context;
-  qh_zero(&context, sink.get());
-  char command[] = "qhull Qt";
-  const bool built =
-      qh_new_qhull(&context, 3, static_cast<int>(copy.cols()), copy.data(), false, command, nullptr, sink.get()) == 0;
-  std::vector<Eigen::Index> indices;
-  if (built) {
-    for (const vertexT* vertex = context.vertex_list; vertex != nullptr && vertex->next != nullptr;
-         vertex = vertex->next) {
-      indices.push_back((vertex->point - copy.data()) / 3);
-    }
-  }
-  qh_freeqhull(&context, !qh_ALL);
-  int current = 0;
-  int total = 0;
-  qh_memfreeshort(&context, &current, &total);
-  if (!built) return std::nullopt;
-  return indices;
-}
 
 /// Vertices that triangles have, ascending: another is no point of the solid.
 std::vector<Eigen::Index> used_vertices(const TriangleMesh& mesh) {
@@ -66,8 +32,8 @@ HullVertices hull_vertices(const TriangleMesh& mesh) {
   Eigen::Matrix3Xd points(3, static_cast<Eigen::Index>(used.size()));
   for (std::size_t i = 0; i < used.size(); ++i) points.col(static_cast<Eigen::Index>(i)) = mesh.vertices.col(used[i]);
   std::vector<Eigen::Index> indices;
-  if (const auto found = hull_indices(points)) {
-    for (const Eigen::Index i : *found) indices.push_back(used[static_cast<std::size_t>(i)]);
+  if (const auto hull = Quickhull::build(points, "Qt")) {
+    for (const Eigen::Index i : hull->vertices()) indices.push_back(used[static_cast<std::size_t>(i)]);
   } else {
     indices = used;
   }
