@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
+#include <utility>
 
 #include "core/require.hpp"
 #include "robot/mesh.hpp"
@@ -81,7 +83,6 @@ Shape inline_mesh(const YamlValue& value) {
   value.allow_keys({"vertices", "triangles"});
   const std::vector<YamlValue> vertices = value.at("vertices").items();
   const std::vector<YamlValue> triangles = value.at("triangles").items();
-  if (triangles.empty()) value.at("triangles").fail("a mesh without triangles");
   TriangleMesh mesh;
   mesh.source = value.file().string();
   mesh.vertices.resize(3, static_cast<Eigen::Index>(vertices.size()));
@@ -92,7 +93,9 @@ Shape inline_mesh(const YamlValue& value) {
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     mesh.triangles.col(static_cast<Eigen::Index>(i)) = triangle_of(triangles[i], mesh.vertices.cols());
   }
-  return std::make_shared<const TriangleMesh>(merge_equal_vertices(mesh));
+  mesh = merge_equal_vertices(mesh);
+  if (mesh.triangles.cols() == 0) value.at("triangles").fail("a mesh without triangles");
+  return std::make_shared<const TriangleMesh>(std::move(mesh));
 }
 
 /// Appends the shapes of one list with the poses of another. A single pose that is left out is the object's own.

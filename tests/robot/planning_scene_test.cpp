@@ -219,6 +219,7 @@ TEST_F(ForeignScenes, MistakesNameTheElement) {
       {mesh("{resource: absent.stl}"), "absent.stl: no such file"},
       {mesh("{vertices: [[0, 0, 0]], triangles: [[0, 0, 1]]}"), "expected the indices of three of the 1 vertices"},
       {mesh("{vertices: [[0, 0, 0]], triangles: []}"), "a mesh without triangles"},
+      {mesh("{vertices: [[0, 0, 0], [1, 0, 0]], triangles: [[0, 1, 0]]}"), "triangles: a mesh without triangles"},
       {mesh("{}"), "has no key 'vertices'"},
       {"world:\n  collision_objects:\n    - id: ''\n", "id: expected a name"},
   };

@@ -78,6 +78,8 @@ TEST_F(ForeignScenes, MistakesInTheTextFormNameObjectAndLine) {
       {head + "box\n1 1 nan\n" + pose + ".\n", "expected a finite number, found 'nan'"},
       {head + "sphere\n1\n0 0 0\n0 0 0 0\n0 0 0 0\n.\n", "unit quaternion"},
       {head + "mesh\n100000000 100000000\n", "announces 100000000 vertices"},
+      {head + "mesh\n1e300 1\n", "announces 1e300 vertices"},
+      {head + "mesh\n2 1\n0 0 0\n1 0 0\n0 1 0\n" + pose + ".\n", "object 'a': a mesh without triangles"},
       {"s\n* a\n0\n.\n", "needs at least one shape"},
       {head + "sphere\n1\n" + pose + "* a\n1\nsphere\n1\n" + pose + ".\n", "two objects of that name"},
   };
@@ -85,6 +87,8 @@ TEST_F(ForeignScenes, MistakesInTheTextFormNameObjectAndLine) {
     const std::string message = scene_error(text, "bad.scene");
     EXPECT_NE(message.find(expected), std::string::npos) << "expected: " << expected << "\nmessage:  " << message;
   }
+  std::filesystem::create_symlink("/dev/zero", folder_ / "endless.scene");
+  EXPECT_THROW(load_scene(folder_ / "endless.scene"), InputError);
 }
 
 }  // namespace
