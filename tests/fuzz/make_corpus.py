@@ -64,7 +64,7 @@ def urdfs():
               "<mesh filename='package://p/a.stl' scale='1 -1 1'/>")
     bodies = "".join(f"<collision><origin xyz='0 0 1'/><geometry>{shape}</geometry></collision>" for shape in shapes)
     links = f"<link name='a'>{bodies}</link>" + "".join(f"<link name='{name}'/>" for name in "bcd")
-    limit = "<limit lower='0' upper='1' velocity='1'/><mimic joint='ab' multiplier='-1' offset='0.5'/>"
+    limit = "<limit lower='0' upper='1' effort='1' velocity='1'/><mimic joint='ab' multiplier='-1' offset='0.5'/>"
     yield f"<?xml version='1.0'?><!-- c --><robot name='r'>{links}{joint('ab', 'revolute')}{joint('ac', 'fixed')}" \
           f"{joint('cd', 'prismatic', limit)}</robot>"
     yield f"<robot name='r'>{links}{joint('ab', 'continuous', '')}{joint('bc', 'revolute')}{joint('bd', 'revolute')}" \

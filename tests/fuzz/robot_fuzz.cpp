@@ -22,7 +22,7 @@ std::string chain(const std::string& names) {
   for (const char name : names) text += std::string("<link name='") + name + "'/>";
   for (std::size_t i = 1; i < names.size(); ++i) {
     text += std::string("<joint name='") + names[i - 1] + names[i] + "' type='revolute'><parent link='" + names[i - 1] +
-            "'/><child link='" + names[i] + "'/><limit lower='-1' upper='1' velocity='1'/></joint>";
+            "'/><child link='" + names[i] + "'/><limit lower='-1' upper='1' effort='1' velocity='1'/></joint>";
   }
   return text + "</robot>";
 }
