@@ -5,8 +5,7 @@
 set(OPPONENS_PYTHON /usr/bin/python3)
 
 # opponens_test(name LABEL label [LONG patterns...] SOURCES ... LIBRARIES ...): one GoogleTest executable; each case is a
-# ctest test. Without OPPONENS_LONG_TESTS the cases that match a pattern of LONG are left out, and the others run together
-# in a few processes: of a sanitized one the start and the end, and what a suite makes once, are most of the time.
+# ctest test. Without OPPONENS_LONG_TESTS the cases that match a pattern of LONG are left out.
 function(opponens_test name)
   cmake_parse_arguments(ARG "" "LABEL;TIMEOUT" "LONG;SOURCES;LIBRARIES" ${ARGN})
   if(NOT OPPONENS_LONG_TESTS AND ARG_LABEL MATCHES "release_only|statistical")
@@ -21,15 +20,11 @@ function(opponens_test name)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
   target_compile_definitions(${name} PRIVATE
     OPPONENS_SOURCE_DIR="${PROJECT_SOURCE_DIR}" OPPONENS_SHARED_DATA="${OPPONENS_SHARED_DATA}")
-  if(NOT OPPONENS_LONG_TESTS)
+  set(filter "")
+  if(ARG_LONG AND NOT OPPONENS_LONG_TESTS)
     list(JOIN ARG_LONG ":" long)
-    foreach(part RANGE 3)
-      add_test(NAME ${name}/part_${part} COMMAND ${name} --gtest_brief=1 "--gtest_filter=-${long}")
-      set_tests_properties(${name}/part_${part} PROPERTIES LABELS "${ARG_LABEL}" TIMEOUT 900
-        ENVIRONMENT "GTEST_TOTAL_SHARDS=4;GTEST_SHARD_INDEX=${part}")
-    endforeach()
-    return()
+    set(filter TEST_FILTER "-${long}")
   endif()
-  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 TEST_PREFIX "${name}/"
+  gtest_discover_tests(${name} ${filter} DISCOVERY_TIMEOUT 60 TEST_PREFIX "${name}/"
     PROPERTIES LABELS "${ARG_LABEL}" TIMEOUT ${ARG_TIMEOUT})
 endfunction()
