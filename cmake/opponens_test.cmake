@@ -4,9 +4,10 @@
 # The system's Python, which has Debian's h5py; another one in PATH may not.
 set(OPPONENS_PYTHON /usr/bin/python3)
 
-# opponens_test(name LABEL label SOURCES ... LIBRARIES ...): one GoogleTest executable; each case is a ctest test.
+# opponens_test(name LABEL label [LONG patterns...] SOURCES ... LIBRARIES ...): one GoogleTest executable; each case is a
+# ctest test. Without OPPONENS_LONG_TESTS the cases that match a pattern of LONG are left out.
 function(opponens_test name)
-  cmake_parse_arguments(ARG "" "LABEL;TIMEOUT" "SOURCES;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "" "LABEL;TIMEOUT" "LONG;SOURCES;LIBRARIES" ${ARGN})
   if(NOT OPPONENS_LONG_TESTS AND ARG_LABEL MATCHES "release_only|statistical")
     return()
   endif()
@@ -19,6 +20,11 @@ function(opponens_test name)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
   target_compile_definitions(${name} PRIVATE
     OPPONENS_SOURCE_DIR="${PROJECT_SOURCE_DIR}" OPPONENS_SHARED_DATA="${OPPONENS_SHARED_DATA}")
-  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 TEST_PREFIX "${name}/"
+  set(filter "")
+  if(ARG_LONG AND NOT OPPONENS_LONG_TESTS)
+    list(JOIN ARG_LONG ":" long)
+    set(filter TEST_FILTER "-${long}")
+  endif()
+  gtest_discover_tests(${name} ${filter} DISCOVERY_TIMEOUT 60 TEST_PREFIX "${name}/"
     PROPERTIES LABELS "${ARG_LABEL}" TIMEOUT ${ARG_TIMEOUT})
 endfunction()

@@ -3,18 +3,13 @@
 #include "robot/convex_hull.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <limits>
-#include <memory>
 #include <numeric>
 #include <optional>
 #include <set>
 
 #include "core/require.hpp"
-
-extern "C" {
-#include <libqhull_r/qhull_ra.h>
-}
+#include "robot/quickhull.hpp"
 
 namespace opponens::robot {
 
@@ -23,33 +18,11 @@ namespace {
 constexpr int kPadding = 8;
 constexpr Eigen::Index kFew = 64;  ///< points that are searched at once
 
-struct CloseFile {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
-
 /// Indices of the hull's vertices; nullopt when qhull finds no volume.
 std::optional<std::vector<Eigen::Index>> solid_hull_indices(const Eigen::Matrix3Xd& points) {
-  if (points.cols() < 4) return std::nullopt;
-  Eigen::Matrix3Xd copy = points;
-  const std::unique_ptr<std::FILE, CloseFile> sink(std::fopen("/dev/null", "w"));  // qhull reports flat sets at length
-  qhT context;
-  qh_zero(&context, sink.get());
-  char command[] = "qhull Qt";
-  const bool built =
-      qh_new_qhull(&context, 3, static_cast<int>(copy.cols()), copy.data(), false, command, nullptr, sink.get()) == 0;
-  std::vector<Eigen::Index> indices;
-  if (built) {
-    for (const vertexT* vertex = context.vertex_list; vertex != nullptr && vertex->next != nullptr;
-         vertex = vertex->next) {
-      indices.push_back((vertex->point - copy.data()) / 3);
-    }
-  }
-  qh_freeqhull(&context, !qh_ALL);
-  int current = 0;
-  int total = 0;
-  qh_memfreeshort(&context, &current, &total);
-  if (!built) return std::nullopt;
-  return indices;
+  const auto hull = Quickhull::build(points, "Qt");
+  if (!hull) return std::nullopt;
+  return hull->vertices();
 }
 
 /// A point off the plane of points that span one: with it they span a volume. nullopt when they lie on a line.

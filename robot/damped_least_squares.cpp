@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <numbers>
 
@@ -12,6 +11,7 @@
 
 #include "core/require.hpp"
 #include "core/rng.hpp"
+#include "robot/three_digits.hpp"
 
 namespace opponens::robot {
 
@@ -109,12 +109,6 @@ double longest_reach(const KinematicChain& chain) {
   return reach;
 }
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
-
 /// Every joint nearer than apart, whole turns aside.
 bool alike(const VectorXd& a, const VectorXd& b, const Mask& turns, double apart) {
   for (Eigen::Index i = 0; i < a.size(); ++i) {
@@ -168,8 +162,8 @@ void validate(const DampedLeastSquaresSettings& settings) {
   require(settings.max_iterations > 0,
           "max_iterations must be positive, is " + std::to_string(settings.max_iterations));
   require(settings.max_solutions > 0, "max_solutions must be positive, is " + std::to_string(settings.max_solutions));
-  require(settings.tolerance >= 1e-13, "tolerance must be at least 1e-13, is " + number(settings.tolerance));
-  require(settings.apart > 0.0, "apart must be positive, is " + number(settings.apart));
+  require(settings.tolerance >= 1e-13, "tolerance must be at least 1e-13, is " + three_digits(settings.tolerance));
+  require(settings.apart > 0.0, "apart must be positive, is " + three_digits(settings.apart));
 }
 
 Result<std::vector<VectorXd>> solve_damped(const KinematicChain& chain, const Isometry3d& X_RT,
@@ -181,7 +175,8 @@ Result<std::vector<VectorXd>> solve_damped(const KinematicChain& chain, const Is
   const double beyond =
       (X_RT.translation() - chain.joints.front().X_PJ.translation()).norm() - longest_reach(chain) - settings.tolerance;
   if (beyond > 0.0) {
-    return failure(FailureCode::out_of_reach, "the tip's pose is " + number(beyond) + " m beyond all lengths together");
+    return failure(FailureCode::out_of_reach,
+                   "the tip's pose is " + three_digits(beyond) + " m beyond all lengths together");
   }
   const Mask moving = chain.moving();
   const Mask turns = chain.turns();
@@ -209,7 +204,7 @@ Result<std::vector<VectorXd>> solve_damped(const KinematicChain& chain, const Is
   if (!solutions.empty()) return solutions;
   return failure(all_minima ? FailureCode::out_of_reach : FailureCode::not_converged,
                  "no position reaches the tip's pose: in " + std::to_string(descents) + " descents it came within " +
-                     number(least) + " (m and rad)");
+                     three_digits(least) + " (m and rad)");
 }
 
 }  // namespace opponens::robot

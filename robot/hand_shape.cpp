@@ -3,13 +3,13 @@
 #include "robot/hand_shape.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <limits>
 #include <set>
 
 #include "core/require.hpp"
 #include "core/rng.hpp"
 #include "robot/fingertip_fit.hpp"
+#include "robot/three_digits.hpp"
 
 namespace opponens::robot {
 
@@ -70,11 +70,9 @@ Result<HandShape> shape_hand(const RobotModel& hand, const std::vector<TipPositi
     if (miss.maxCoeff() < best.miss.maxCoeff()) best = {q, miss};
   }
   if (best.miss.maxCoeff() <= settings.tolerance) return best;
-  char least[32];
-  std::snprintf(least, sizeof least, "%.3g", best.miss.maxCoeff());
-  return failure(
-      all_converged ? FailureCode::out_of_reach : FailureCode::not_converged,
-      "no hand shape brings all tips to their positions; the nearest misses one by " + std::string(least) + " m");
+  return failure(all_converged ? FailureCode::out_of_reach : FailureCode::not_converged,
+                 "no hand shape brings all tips to their positions; the nearest misses one by " +
+                     three_digits(best.miss.maxCoeff()) + " m");
 }
 
 }  // namespace opponens::robot

@@ -82,8 +82,9 @@ class Collector {
     for (std::size_t i = 0; i < triangles_.size(); ++i) {
       mesh.triangles.col(static_cast<Eigen::Index>(i)) = triangles_[i];
     }
-    // A mirroring scale turns the triangles inside out.
-    if (scale.prod() < 0.0) mesh.triangles.row(1).swap(mesh.triangles.row(2));
+    if (!mesh.vertices.allFinite()) fail(file_, "has vertices that are not finite once scaled");
+    // A mirroring scale turns the triangles inside out. The product of the factors may vanish, their signs do not.
+    if ((scale.array() < 0.0).count() % 2 == 1) mesh.triangles.row(1).swap(mesh.triangles.row(2));
     return mesh;
   }
 
@@ -122,7 +123,7 @@ std::shared_ptr<const TriangleMesh> load_mesh(const std::filesystem::path& file,
 }
 
 TriangleMesh read_mesh(const std::filesystem::path& file, const Eigen::Vector3d& scale) {
-  require(scale.allFinite() && scale.prod() != 0.0, "read_mesh: scale must be finite and not zero");
+  require(scale.allFinite() && (scale.array() != 0.0).all(), "read_mesh: scale must be finite and not zero");
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) fail(file, "no such file");
   const std::uintmax_t bytes = std::filesystem::file_size(file, error);

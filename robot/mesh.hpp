@@ -11,8 +11,9 @@
 
 namespace opponens::robot {
 
-/// Reads STL, OBJ or DAE through assimp, multiplied by scale; duplicate vertices are merged exactly.
-/// Throws InputError when absent, unreadable or without triangles.
+/// Reads STL, OBJ or DAE through assimp, multiplied by scale (finite, not 0); duplicate vertices are merged exactly. A
+/// negative factor mirrors, and the triangles still turn outward. Throws InputError when absent, unreadable, not finite
+/// or without triangles.
 std::shared_ptr<const TriangleMesh> load_mesh(const std::filesystem::path& file,
                                               const Eigen::Vector3d& scale = Eigen::Vector3d::Ones());
 

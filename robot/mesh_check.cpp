@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <map>
 #include <numeric>
 #include <set>
@@ -13,6 +12,7 @@
 #include "robot/mesh.hpp"
 #include "robot/mesh_repair.hpp"
 #include "robot/mesh_topology.hpp"
+#include "robot/three_digits.hpp"
 
 namespace opponens::robot {
 
@@ -89,12 +89,6 @@ std::vector<double> likely_scales(double longest) {
   return scales;
 }
 
-std::string text(double value) {
-  std::array<char, 32> buffer{};
-  std::snprintf(buffer.data(), buffer.size(), "%.3g", value);
-  return buffer.data();
-}
-
 std::string counted(int count, const std::string& one, const std::string& many) {
   return std::to_string(count) + " " + (count == 1 ? one : many);
 }
@@ -113,10 +107,10 @@ std::string size_defect(const MeshReport& report) {
   const double longest = report.extent.maxCoeff();
   if (longest >= kShortest && longest <= kLongest) return "";
   std::string sentence = "is ";
-  sentence.append(text(longest)).append(" m long: a wrong unit?");
+  sentence.append(three_digits(longest)).append(" m long: a wrong unit?");
   for (const double scale : report.likely_scales) {
     sentence.append(" ").append(unit_of_scale(scale)).append(" it would be ");
-    sentence.append(text(longest * scale)).append(" m;");
+    sentence.append(three_digits(longest * scale)).append(" m;");
   }
   if (sentence.back() == ';') sentence.pop_back();
   return sentence;
@@ -167,8 +161,8 @@ std::vector<std::string> defects(const MeshReport& report) {
   };
   if (!report.holes.empty()) {
     found.push_back(counted(static_cast<int>(report.holes.size()), "hole", "holes") + " (the longest rim has " +
-                    counted(report.holes.front().edges, "edge", "edges") + ", " + text(report.holes.front().length) +
-                    " m)");
+                    counted(report.holes.front().edges, "edge", "edges") + ", " +
+                    three_digits(report.holes.front().length) + " m)");
   }
   add(report.flipped_triangles, "triangle turned against its neighbours", "triangles turned against their neighbours");
   add(report.inside_out, "part inside out", "parts inside out");

@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
+#include <utility>
 
 #include "core/require.hpp"
 #include "robot/mesh.hpp"
 #include "robot/planning_scene_file.hpp"
+#include "robot/resource_place.hpp"
 #include "robot/scene_values.hpp"
 
 namespace opponens::robot {
@@ -42,28 +45,13 @@ Shape primitive_of(const YamlValue& value) {
   written.fail("expected box, sphere, cylinder or cone, found '" + type + "'");
 }
 
-/// Where the file of a mesh lies. A package's meshes lie inside the package.
+/// Where the file of a mesh lies; ${NAME} is expanded in a path, not in a URI.
 std::filesystem::path resource_path(const YamlValue& resource, const PackagePaths& packages) {
-  static const std::string kPackage = "package://";
-  static const std::string kFile = "file://";
-  const std::string uri = resource.text();
-  if (uri.starts_with(kFile)) return uri.substr(kFile.size());
-  if (!uri.starts_with(kPackage)) return resource.path();
-  const std::size_t slash = uri.find('/', kPackage.size());
-  const std::string package = uri.substr(kPackage.size(), slash - kPackage.size());
-  const std::string rest = slash == std::string::npos ? "" : uri.substr(slash + 1);
-  const std::filesystem::path inside = std::filesystem::path(rest).lexically_normal();
-  if (inside.is_absolute() || inside.empty() || *inside.begin() == "..") {
-    resource.fail("'" + uri + "' lies outside of its package");
-  }
-  if (const auto found = packages.directories.find(package); found != packages.directories.end()) {
-    return found->second / inside;
-  }
-  for (const std::filesystem::path& root : packages.roots) {
-    if (!package.empty() && std::filesystem::is_directory(root / package)) return root / package / inside;
-  }
-  resource.fail("'" + uri + "': package '" + package +
-                "' has no path; import this scene from one of ours with the key packages");
+  const std::string name = resource.text();
+  if (name.find("://") == std::string::npos) return resource.path();
+  const ResourcePlace place = find_resource(name, resource.file(), packages);
+  if (!place.problem.empty()) resource.fail("'" + name + "' " + place.problem);
+  return place.path;
 }
 
 Shape mesh_of_resource(const YamlValue& value, const PackagePaths& packages) {
@@ -95,7 +83,6 @@ Shape inline_mesh(const YamlValue& value) {
   value.allow_keys({"vertices", "triangles"});
   const std::vector<YamlValue> vertices = value.at("vertices").items();
   const std::vector<YamlValue> triangles = value.at("triangles").items();
-  if (triangles.empty()) value.at("triangles").fail("a mesh without triangles");
   TriangleMesh mesh;
   mesh.source = value.file().string();
   mesh.vertices.resize(3, static_cast<Eigen::Index>(vertices.size()));
@@ -106,7 +93,9 @@ Shape inline_mesh(const YamlValue& value) {
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     mesh.triangles.col(static_cast<Eigen::Index>(i)) = triangle_of(triangles[i], mesh.vertices.cols());
   }
-  return std::make_shared<const TriangleMesh>(merge_equal_vertices(mesh));
+  mesh = merge_equal_vertices(mesh);
+  if (mesh.triangles.cols() == 0) value.at("triangles").fail("a mesh without triangles");
+  return std::make_shared<const TriangleMesh>(std::move(mesh));
 }
 
 /// Appends the shapes of one list with the poses of another. A single pose that is left out is the object's own.

@@ -67,6 +67,7 @@ Shape mesh_of(const YamlValue& value, Meshes& known) {
     if (scale.minCoeff() <= 0.0) written->fail("expected a positive factor, or three");
   }
   if (const auto unit = value.find("unit")) scale *= unit_of(*unit);
+  if (scale.minCoeff() <= 0.0) value.at("scale").fail("leaves nothing of the mesh");
   const YamlValue file = value.at("file");
   const std::filesystem::path path = file.path();
   std::shared_ptr<const TriangleMesh>& mesh = known[{path.string(), {scale[0], scale[1], scale[2]}}];

@@ -2,16 +2,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/scene_text_file.hpp"
 
+#include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
-#include <fstream>
+#include <memory>
 #include <set>
-#include <sstream>
+#include <utility>
 
 #include "core/require.hpp"
 #include "robot/mesh.hpp"
 #include "robot/planning_scene_file.hpp"
 #include "robot/scene_values.hpp"
+#include "robot/text_file.hpp"
 
 namespace opponens::robot {
 
@@ -20,13 +23,7 @@ namespace {
 /// Walks over the text word by word and knows the line for its complaints.
 class Words {
  public:
-  explicit Words(const std::filesystem::path& file) : file_(file) {
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream || std::filesystem::is_directory(file)) throw InputError(file.string() + ": cannot be opened");
-    std::stringstream content;
-    content << stream.rdbuf();
-    text_ = content.str();
-  }
+  explicit Words(const std::filesystem::path& file) : file_(file), text_(read_text_file(file, "a scene")) {}
 
   [[noreturn]] void fail(const std::string& message) const {
     throw InputError(file_.string() + ":" + std::to_string(line_) + ": " +
@@ -70,8 +67,9 @@ class Words {
     return count;
   }
 
-  double number() {
-    const std::string text = word();
+  double number() { return number(word()); }
+
+  double number(const std::string& text) const {
     double value = 0.0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {
@@ -88,12 +86,12 @@ class Words {
 
   /// A count of things that take at least `bytes` each: a damaged one must not allocate more than the file can fill.
   int count(const std::string& of, std::size_t bytes) {
-    const double value = number();
+    const std::string text = word();
+    const double value = number(text);
     const std::size_t left = text_.size() - position_;
     if (value < 0.0 || value != std::floor(value)) fail("expected a number of " + of);
     if (value * static_cast<double>(bytes) > static_cast<double>(left) + 1.0) {
-      fail("announces " + std::to_string(static_cast<long long>(value)) + " " + of + ", but only " +
-           std::to_string(left) + " bytes follow");
+      fail("announces " + text + " " + of + ", but only " + std::to_string(left) + " bytes follow");
     }
     return static_cast<int>(value);
   }
@@ -130,7 +128,6 @@ Shape read_mesh_shape(Words& words, const std::filesystem::path& file) {
   mesh.source = file.string();
   const int vertices = words.count("vertices", kBytesOfThreeNumbers);
   const int triangles = words.count("triangles", kBytesOfThreeNumbers);
-  if (triangles == 0) words.fail("a mesh without triangles");
   mesh.vertices.resize(3, vertices);
   mesh.triangles.resize(3, triangles);
   for (int i = 0; i < vertices; ++i) mesh.vertices.col(i) = words.vector();
@@ -141,7 +138,9 @@ Shape read_mesh_shape(Words& words, const std::filesystem::path& file) {
       mesh.triangles(k, i) = static_cast<int>(index);
     }
   }
-  return std::make_shared<const TriangleMesh>(merge_equal_vertices(mesh));
+  mesh = merge_equal_vertices(mesh);
+  if (mesh.triangles.cols() == 0) words.fail("a mesh without triangles");
+  return std::make_shared<const TriangleMesh>(std::move(mesh));
 }
 
 Shape read_shape(Words& words, const std::filesystem::path& file) {

@@ -25,7 +25,7 @@ using Axes = std::array<Axis, 6>;
 const char* family_fault(const Axes& axes) {
   const auto& [j1, j2, j3, j4, j5, j6] = axes;
   const auto small = [](double value) { return std::abs(value) < kFamilyTolerance; };
-  const auto flat = [&](const Vector3d& v) { return (v - v.dot(j2.w) * j2.w).eval(); };
+  const auto flat = [&w = j2.w](const Vector3d& v) { return (v - v.dot(w) * w).eval(); };
   if (!small(j2.w.cross(j3.w).norm()) || !small(j2.w.cross(j4.w).norm()))
     return "the axes of joints 2, 3 and 4 are not parallel";
   if (!small(j1.w.dot(j2.w))) return "the axes of joints 1 and 2 are not perpendicular";

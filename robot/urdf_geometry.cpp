@@ -8,6 +8,7 @@
 
 #include "core/require.hpp"
 #include "robot/mesh.hpp"
+#include "robot/resource_place.hpp"
 
 namespace opponens::robot {
 
@@ -28,76 +29,6 @@ Eigen::Isometry3d urdf_pose(const urdf::Pose& pose, const std::filesystem::path&
 
 namespace {
 
-/// A folder called `package` above the URDF, or beside one that is above it.
-std::optional<std::filesystem::path> package_above(const std::filesystem::path& urdf_file, const std::string& package) {
-  std::error_code error;
-  std::filesystem::path folder = std::filesystem::absolute(urdf_file, error).parent_path();
-  for (; !folder.empty() && folder != folder.root_path(); folder = folder.parent_path()) {
-    if (folder.filename() == package) return folder;
-    if (std::filesystem::is_directory(folder / package, error)) return folder / package;
-  }
-  return std::nullopt;
-}
-
-std::optional<std::filesystem::path> package_folder(const std::string& package, const std::filesystem::path& urdf_file,
-                                                    const PackagePaths& packages) {
-  if (const auto found = packages.directories.find(package); found != packages.directories.end()) return found->second;
-  std::error_code error;
-  for (const std::filesystem::path& root : packages.roots) {
-    if (std::filesystem::is_directory(root / package, error)) return root / package;
-  }
-  return package_above(urdf_file, package);
-}
-
-/// Whether `inner` lies in `folder` once links are followed; what does not exist is judged by its names, and what
-/// cannot be followed (links in a circle) is left to the check that it is a file.
-bool lies_in(const std::filesystem::path& inner, const std::filesystem::path& folder) {
-  std::error_code error;
-  const std::filesystem::path full = std::filesystem::weakly_canonical(inner, error);
-  if (error) return true;
-  const std::filesystem::path root = std::filesystem::weakly_canonical(folder, error);
-  if (error) return true;
-  const std::filesystem::path relative = full.lexically_relative(root);
-  return !relative.empty() && *relative.begin() != "..";
-}
-
-/// Where a mesh lies, or why that cannot be told.
-struct MeshPlace {
-  std::filesystem::path path;
-  std::string problem;              ///< empty: it is a file
-  bool leaves_its_package = false;  ///< never passed over: no honest file does
-};
-
-MeshPlace checked_file(const std::filesystem::path& path) {
-  std::error_code error;
-  if (std::filesystem::is_regular_file(path, error)) return {path, ""};
-  if (std::filesystem::is_directory(path, error)) return {path, "is a directory: " + path.string()};
-  const bool exists = std::filesystem::exists(path, error);
-  return {path, (exists ? "is not a regular file: " : "does not exist: ") + path.string()};
-}
-
-MeshPlace mesh_place(const std::string& name, const std::filesystem::path& urdf_file, const PackagePaths& packages) {
-  static const std::string kPackage = "package://";
-  static const std::string kFile = "file://";
-  if (name.starts_with(kFile)) return checked_file(name.substr(kFile.size()));
-  if (!name.starts_with(kPackage)) {
-    const std::filesystem::path path = name;
-    return checked_file(path.is_absolute() ? path : urdf_file.parent_path() / path);
-  }
-  const std::size_t slash = name.find('/', kPackage.size());
-  const std::string package = name.substr(kPackage.size(), slash - kPackage.size());
-  const std::filesystem::path rest = slash == std::string::npos ? "" : name.substr(slash + 1);
-  const std::filesystem::path plain = rest.lexically_normal();
-  if (package.empty() || package == "." || package == ".." || rest.is_absolute() ||
-      (!plain.empty() && *plain.begin() == "..")) {
-    return {{}, "leaves its package", true};
-  }
-  const std::optional<std::filesystem::path> folder = package_folder(package, urdf_file, packages);
-  if (!folder) return {{}, "package '" + package + "' has no path (key packages)"};
-  if (!lies_in(*folder / rest, *folder)) return {{}, "leaves its package, " + folder->string(), true};
-  return checked_file(*folder / rest);
-}
-
 bool positive(double value) { return std::isfinite(value) && value > 0.0; }
 
 }  // namespace
@@ -108,7 +39,7 @@ std::optional<Shape> ShapeReader::mesh(const urdf::Mesh& mesh, const std::string
   if (!scale.allFinite() || (scale.array() == 0.0).any()) {
     fail_urdf(file_, element + ": scale must be finite and not 0 (negative mirrors)");
   }
-  const MeshPlace place = mesh_place(mesh.filename, file_, settings_.packages);
+  const ResourcePlace place = find_resource(mesh.filename, file_, settings_.packages);
   if (!place.problem.empty()) {
     if (settings_.missing_meshes == MissingMeshes::refuse || place.leaves_its_package) {
       fail_urdf(file_, element + " " + place.problem);
@@ -117,7 +48,12 @@ std::optional<Shape> ShapeReader::mesh(const urdf::Mesh& mesh, const std::string
     return std::nullopt;
   }
   auto& entry = cache_[{place.path.string(), scale.x(), scale.y(), scale.z()}];
-  if (!entry) entry = load_mesh(place.path, scale);
+  if (entry) return entry;
+  try {
+    entry = load_mesh(place.path, scale);
+  } catch (const InputError& error) {
+    fail_urdf(file_, "link '" + link + "': " + error.what());
+  }
   return entry;
 }
 

@@ -94,10 +94,7 @@ void another_checker(benchmark::State& state, const fs::path& file) {
 
 void add(const std::string& name, const fs::path& file) {
   const auto add_one = [&](const std::string& what, const auto& function) {
-    benchmark::RegisterBenchmark((what + "/" + name).c_str(), function)
-        ->Unit(benchmark::kMillisecond)
-        ->Repetitions(9)
-        ->ReportAggregatesOnly();
+    benchmark::RegisterBenchmark((what + "/" + name).c_str(), function)->Unit(benchmark::kMillisecond);
   };
   add_one("load", [file](benchmark::State& state) { load(state, file); });
   add_one("load_and_check", [file](benchmark::State& state) { load_and_check(state, file); });

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Proving recorded paths (shelf_paths.json: record_paths.py on a store of `opponens demo` and `opponens plan`; the
 // laboratory's by the same on its robot). One round checks all paths of the file; counters are per path. Building the
-// trees of a robot and a scene is timed by itself.
+// trees of a robot and a scene is timed by itself. OPPONENS_BENCHMARK_PATHS: only so many paths of each file.
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -28,8 +28,10 @@ struct Recorded {
 Recorded read_paths(const std::string& file, const robot::RobotModel& robot, const std::string& object) {
   std::ifstream stream(file);
   const auto document = nlohmann::json::parse(stream);
+  const char* const at_most = std::getenv("OPPONENS_BENCHMARK_PATHS");
   Recorded recorded;
   for (const auto& one : document.at("paths")) {
+    if (at_most != nullptr && recorded.paths.size() >= std::stoul(at_most)) break;
     const auto rows = one.at("waypoints").get<std::vector<std::vector<double>>>();
     JointPath path;
     path.joint_names = robot.joint_names();

@@ -1,18 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The opponens authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include <unistd.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <string>
 
 #include "storage/contents.hpp"
 #include "storage/store.hpp"
+#include "tests/fuzz/scratch.hpp"
 
 using namespace opponens::storage;
+using opponens::fuzz::spill;
 
 namespace {
 
@@ -39,25 +38,12 @@ void read_all(const std::filesystem::path& path) {
   salvage(file);
 }
 
-/// In memory where the system has that.
-std::filesystem::path scratch() {
-  const std::filesystem::path memory = "/dev/shm";
-  const auto folder = std::filesystem::exists(memory) ? memory : std::filesystem::temp_directory_path();
-  return folder / ("contents_fuzz-" + std::to_string(::getpid()));
-}
-
-void spill(const std::filesystem::path& path, const std::string& bytes) {
-  std::ofstream(path, std::ios::binary | std::ios::trunc) << bytes;
-}
-
 }  // namespace
 
 /// The bytes as a file; and as the one object of a file whose table and trailer fit, which hardly any input has.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const std::filesystem::path path = scratch();
   std::string bytes(reinterpret_cast<const char*>(data), size);
-  spill(path, bytes);
-  read_all(path);
+  read_all(spill("contents", bytes));
   const std::vector<std::byte> empty = ContentsBuilder().finish(0);
   const std::string trailer(reinterpret_cast<const char*>(empty.data()) + empty.size() - kTrailer, kTrailer);
   const auto number = [&](std::uint64_t value) { bytes.append(reinterpret_cast<const char*>(&value), sizeof value); };
@@ -65,8 +51,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   number(size);
   number(1);
   number(size);
-  spill(path, bytes + trailer.substr(16));
-  read_all(path);
-  std::filesystem::remove(path);
+  read_all(spill("contents", bytes + trailer.substr(16)));
   return 0;
 }

@@ -3,74 +3,20 @@
 #include "report/report.hpp"
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 #include <functional>
-#include <regex>
 #include <set>
-#include <sstream>
 
 #include <gtest/gtest.h>
 
-#include "report/body_drawing.hpp"
-#include "report/paper_tables.hpp"
-#include "report/text.hpp"
-#include "tests/report/markup_check.hpp"
-#include "tests/report/synthetic_report.hpp"
+#include "tests/report/made_reports.hpp"
 
 namespace opponens::report {
 namespace {
-
-using Problems = std::vector<std::string>;
-
-/// Made once: loading the models is most of the time.
-const ReportInput& full() {
-  static const ReportInput input = synthetic_report();
-  return input;
-}
-
-/// The same with two groups, one grasp and two snapshots: quick to render.
-const ReportInput& small() {
-  static const ReportInput input = [] {
-    ReportInput reduced = full();
-    reduced.synergies->groups.resize(2);
-    reduced.grasps->items.resize(1);
-    reduced.path->pictures = 2;
-    return reduced;
-  }();
-  return input;
-}
-
-bool contains(const std::string& page, const std::string& part) { return page.find(part) != std::string::npos; }
-
-/// The page without tags and style sheet: what a person reads.
-std::string words_of(const std::string& page) {
-  std::string words;
-  bool inside = false;
-  for (const char c : page.substr(page.find("</style>"))) {
-    inside = (inside || c == '<') && c != '>';
-    words += inside || c == '>' ? ' ' : c;
-  }
-  return words;
-}
 
 std::string without_run_log(const std::string& page) {
   const auto begin = page.find(kRunLogBegin);
   const auto end = page.find(kRunLogEnd);
   return page.substr(0, begin) + page.substr(end);
-}
-
-void expect_sound(const std::string& page) {
-  EXPECT_EQ(markup_problems(page), Problems{});
-  static const std::regex kBadNumber(R"(\b(nan|inf|-nan|-inf)\b)");
-  EXPECT_FALSE(std::regex_search(words_of(page), kBadNumber));
-  for (const char* name : {"d", "points", "x", "y", "x1", "y1", "x2", "y2", "cx", "cy", "width", "height", "viewBox"}) {
-    for (const auto& value : attribute_values(page, name)) {
-      ASSERT_EQ(value.find("nan"), std::string::npos) << name;
-      ASSERT_EQ(value.find("inf"), std::string::npos) << name;
-      ASSERT_EQ(value.find("n/a"), std::string::npos) << name;
-    }
-  }
 }
 
 TEST(Report, IsOneSoundSelfContainedPage) {
@@ -109,34 +55,6 @@ TEST(Report, RunsDifferOnlyBetweenTheRunLogComments) {
   expect_sound(render_report(later));
 }
 
-TEST(Report, SuccessIsTheShareOfAllRunsAndEachLengthIsNamed) {
-  ReportInput input = small();
-  PlanRun solved;
-  solved.planner = "synergy";
-  solved.settings = "step 0.4 rad";
-  solved.result.status = PlanStatus::solved;
-  solved.result.length = 2.125;
-  solved.result.length_l1 = 5.96;
-  solved.shortened_length = 1.92;
-  PlanRun failed = solved;
-  failed.result = {};
-  failed.result.status = PlanStatus::check_limit;
-  failed.shortened_length.reset();
-  input.path = PathPart{};
-  input.path->runs = {solved, failed, failed, failed};
-  input.run = RunPart{"log", {{"synergy", 0.25}}, {{"plan", "2026-01-01T10:00:00Z", 0.5, 0.25, 2, "host"}}};
-  const std::string page = render_report(input);
-  const std::size_t row = page.find("here, synergy (4 runs, step 0.4 rad)");
-  ASSERT_NE(row, std::string::npos);
-  EXPECT_NE(page.substr(row, 200).find("25 %"), std::string::npos) << page.substr(row, 200);
-  for (const char* words : {"as planned 2.12 rad in the joint metric, 5.96 rad as the sum of weighted joint movements; "
-                            "shortened 1.92 rad in the joint metric",
-                            "synergy: 0.250 s of CPU per run", "check limit", "<td>2026-01-01T10:00:00Z</td>"}) {
-    EXPECT_NE(page.find(words), std::string::npos) << words;
-  }
-  expect_sound(page);
-}
-
 TEST(Report, BannerStandsExactlyWhenSomethingIsSimulated) {
   EXPECT_TRUE(contains(render_report(small()), "SIMULATED demonstrations."));
   EXPECT_TRUE(contains(render_report(small()), "proves nothing about humans"));
@@ -173,7 +91,7 @@ TEST(Report, EveryMissingPartBecomesASentence) {
     ReportInput input = small();
     remove(input);
     const std::string page = render_report(input);
-    EXPECT_EQ(markup_problems(page), Problems{}) << sentence;
+    EXPECT_EQ(markup_problems(page), std::vector<std::string>{}) << sentence;
     EXPECT_TRUE(contains(page, sentence)) << sentence;
   }
   const std::string empty = render_report(ReportInput{});
@@ -199,81 +117,6 @@ TEST(Report, EveryPictureIsAFileOfItsOwn) {
   }
   EXPECT_TRUE(names.contains("synergies_1.svg"));
   EXPECT_TRUE(names.contains("shapes_1.svg"));
-}
-
-TEST(Report, CoverageAndTheMappingAreShown) {
-  ReportInput input = small();
-  input.demonstrations->mapping = "fingertip";
-  input.demonstrations->tip_residuals = {{"thumb", 0.0131}};
-  input.demonstrations->clamped_shares = {{"joint_15.0", 0.493}};
-  input.transitions->others.push_back(*input.transitions->example);
-  input.transitions->chosen_by = "Chosen by lot.";
-  const std::string page = render_report(input);
-  expect_sound(page);
-  for (const char* words : {"13.1", "joint_15.0", "49.3", "Chosen by lot.", "Coverage of the full box", "held out (bar",
-                            "Synergy 3:", "mean + 1.5 s"}) {
-    EXPECT_TRUE(contains(page, words)) << words;
-  }
-}
-
-/// Vertical places of the dashed lines in a plot, from the left.
-std::vector<double> dashed_heights(const std::string& svg) {
-  static const std::regex kDashed(R"re(<polyline points="[-0-9.]+,([-0-9.]+) [^>]*stroke-dasharray)re");
-  std::vector<double> heights;
-  for (std::sregex_iterator it(svg.begin(), svg.end(), kDashed), end; it != end; ++it)
-    heights.push_back(std::stod((*it)[1].str()));
-  return heights;
-}
-
-TEST(Report, EachGroupsCoverageStandsAtItsOwnNominalAndNamesItsCluster) {
-  ReportInput input = small();
-  input.synergies->groups[0].reduced_box->nominal = 0.99;
-  input.synergies->groups[1].reduced_box->nominal = 0.91;
-  input.synergies->groups[0].cluster = "subject";
-  const std::string page = render_report(input);
-  const std::size_t title = page.find("Coverage of the first k coordinates");
-  ASSERT_NE(title, std::string::npos);
-  const auto heights = dashed_heights(page.substr(title, page.find("</svg>", title) - title));
-  ASSERT_EQ(heights.size(), 2U) << "one line per group";
-  EXPECT_LT(heights[0] + 5.0, heights[1]) << "99 % lies above 91 %";
-  EXPECT_TRUE(contains(page, "Coverage of the first k coordinates. 1: pre-grasp, 2: family 1."));
-  for (const char* cluster : {"subject", "recording"}) {
-    EXPECT_TRUE(contains(page, concat({"<td>", cluster, "</td>"}))) << cluster;
-  }
-}
-
-TEST(Report, AGroupOfTooFewClustersHasNoBandAndSaysSo) {
-  const std::string said = "no interval: too few clusters";
-  ReportInput input = small();
-  EXPECT_FALSE(contains(render_report(input), said));
-  auto& item = input.synergies->groups[1];
-  item.cumulative_low.resize(0);
-  item.cumulative_high.resize(0);
-  item.full_box->interval.reset();
-  const std::string page = render_report(input);
-  expect_sound(page);
-  EXPECT_TRUE(contains(page, concat({"this analysis (", said, ")"})));
-  EXPECT_TRUE(contains(page, concat({"[", said, "] of "})));
-}
-
-TEST(Report, WithoutASplitNoRuleIsInForce) {
-  ReportInput input = small();
-  EXPECT_TRUE(contains(render_report(input), "In force here: likeness."));
-  input.transitions = TransitionPart{};
-  const std::string page = render_report(input);
-  EXPECT_FALSE(contains(page, "In force here"));
-  EXPECT_TRUE(contains(page, "No split was made here"));
-}
-
-TEST(Report, APostureBeyondTheLimitsSaysByHowMuchItWasClipped) {
-  ReportInput input = small();
-  input.synergies->groups.resize(1);
-  auto& basis = input.synergies->groups[0].group.basis;
-  basis.mean = rest_configuration(*input.hand);
-  basis.variance.setZero();
-  EXPECT_FALSE(contains(render_report(input), "clipped by")) << "the rest configuration is within the limits";
-  basis.mean[2] = input.hand->upper()[2] + 0.37;
-  EXPECT_TRUE(contains(render_report(input), "mean, clipped by 0.37"));
 }
 
 TEST(Report, HostileTextStaysText) {
@@ -349,70 +192,6 @@ TEST(Report, SizesThatDisagreeAreRefused) {
     ReportInput input = small();
     breaks[c](input);
     EXPECT_THROW(render_report(input), std::invalid_argument) << "case " << c;
-  }
-}
-
-TEST(Report, TableOneIsComparedOnlyByFamily) {
-  EXPECT_TRUE(contains(render_report(small()), "Table 1, family 1"));
-  ReportInput objects = small();
-  objects.synergies->grouped_by = "object";
-  const std::string page = render_report(objects);
-  EXPECT_FALSE(contains(page, "Table 1, family"));
-  EXPECT_TRUE(contains(page, "Table 1, pre-grasp (context)"));
-  EXPECT_TRUE(contains(page, "not comparable group by group"));
-  EXPECT_EQ(paper_variance("Family 3"), nullptr);
-  EXPECT_EQ(paper_variance("5"), nullptr);
-  EXPECT_EQ(paper_variance("family_2"), &kPaperTable1[2]);
-}
-
-TEST(Report, AFailedRunAndAFailedVerdictAreSeen) {
-  ReportInput input = small();
-  input.path->runs[0].result.status = PlanStatus::iteration_limit;
-  input.path->runs[0].result.detail = "stopped after 100000 iterations";
-  input.verification->verdicts[0] = {"abc", "grasp", false, "slips"};
-  const std::string page = render_report(input);
-  EXPECT_TRUE(contains(page, "iteration limit"));
-  EXPECT_TRUE(contains(page, "stopped after 100000 iterations"));
-  EXPECT_TRUE(contains(page, "none found by synergy"));
-  EXPECT_TRUE(contains(page, " grasps and paths failed; 187 hashes agree"));
-  EXPECT_TRUE(contains(page, "slips"));
-}
-
-TEST(ByName, OrdersByNameAndKeepsTheValues) {
-  const auto& hand = *full().hand;
-  const auto& names = hand.joint_names();
-  const Eigen::VectorXd base = rest_configuration(hand);
-  const Eigen::VectorXd q = by_name(hand, {names[5], names[2]}, Eigen::Vector2d(0.3, 100.0), base);
-  EXPECT_DOUBLE_EQ(q[5], 0.3);
-  EXPECT_DOUBLE_EQ(q[2], 100.0) << "clipping is the caller's, who may have to say so";
-  EXPECT_DOUBLE_EQ(q[7], base[7]);
-  EXPECT_THROW(by_name(hand, {names[0]}, Eigen::Vector2d(0, 0), base), std::invalid_argument);
-  EXPECT_THROW(by_name(hand, {names[0], "unknown"}, Eigen::Vector2d(0, 0), base), std::invalid_argument);
-}
-
-/// The figures embedded in the program against the published table as transcribed independently.
-TEST(PaperTables, TableOneEqualsTheReference) {
-  const std::filesystem::path file = std::filesystem::path(OPPONENS_SHARED_DATA) / "reference" / "paper_table1.csv";
-  std::ifstream in(file);
-  if (!in) GTEST_SKIP() << file << " is absent";
-  std::string line;
-  std::getline(in, line);
-  for (int k = 1; k <= 9; ++k) {
-    ASSERT_TRUE(std::getline(in, line));
-    std::replace(line.begin(), line.end(), ',', ' ');
-    std::istringstream fields(line);
-    int written = 0;
-    ASSERT_TRUE(fields >> written);
-    ASSERT_EQ(written, k);
-    for (const auto& column : kPaperTable1) {
-      double value = 0.0;
-      ASSERT_TRUE(fields >> value);
-      EXPECT_DOUBLE_EQ(value, column.percent[static_cast<std::size_t>(k - 1)]) << column.name;
-    }
-  }
-  for (const auto& column : kPaperTable1) {
-    const auto reached = std::find_if(column.percent.begin(), column.percent.end(), [](double p) { return p >= 95.0; });
-    EXPECT_EQ(column.k, reached - column.percent.begin() + 1) << column.name;
   }
 }
 

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "robot/load_robot.hpp"
+#include "robot/mesh.hpp"
 #include "robot_files.hpp"
 
 namespace opponens::robot {
@@ -79,7 +80,7 @@ TEST_F(BadUrdf, MeshesThatAreNone) {
   const std::uint32_t count = 20'000'000;
   std::memcpy(stl.data() + 80, &count, sizeof(count));
   write("large.stl", stl);
-  expect_contains(with_mesh("large.stl"), {"large.stl", "announces 20000000 triangles"});
+  expect_contains(with_mesh("large.stl"), {"hand.urdf", "'a'", "large.stl", "announces 20000000 triangles"});
   write("large.obj", "v 0 0 0\nf 1 2000000000 3\n");
   expect_contains(with_mesh("large.obj"), {"large.obj"});
   write("large.dae",
@@ -91,6 +92,32 @@ TEST_F(BadUrdf, MeshesThatAreNone) {
   expect_contains(with_mesh("empty.dae"), {"empty.dae"});
   write("text.stl", "solid");
   expect_contains(with_mesh("text.stl"), {"text.stl"});
+}
+
+TEST_F(BadUrdf, MeshScalesAreFiniteAndNotZero) {
+  write_stl(folder_ / "t.stl");
+  const auto scaled = [&](const std::string& scale) { return with_mesh("t.stl' scale='" + scale); };
+  EXPECT_EQ(scaled("-1 1 1"), "no error");
+  EXPECT_EQ(scaled("1e-150 1e-150 1e-150"), "no error") << "the product vanishes, the mesh does not";
+  for (const char* scale : {"1 0 1", "inf 1 1", "1 nan 1"}) {
+    expect_contains(scaled(scale), {"hand.urdf", "'a'", "scale"});
+  }
+  write("far.obj", "v 0 0 0\nv 1e10 0 0\nv 0 1 0\nf 1 2 3\n");
+  expect_contains(with_mesh("far.obj' scale='1e300 1 1"), {"hand.urdf", "'a'", "far.obj", "not finite once scaled"});
+}
+
+TEST_F(BadUrdf, ANegativeMeshScaleMirrorsTheSolid) {
+  write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+  for (const std::string scale : {"1 -1 1", "-1 -1 -1", "1e-120 -1e-120 1e-120"}) {
+    write("hand.urdf", robot("<link name='a'><collision><geometry><mesh filename='t.obj' scale='" + scale +
+                             "'/></geometry></collision></link>" + links("b") + joint("j", "a", "b")));
+    const auto hand = load_hand(write("hand.yaml", "urdf: hand.urdf\npalm_link: a\njoints: [j]\n"));
+    TriangleMesh mesh = *std::get<std::shared_ptr<const TriangleMesh>>(hand.links[0].collision[0].shape);
+    EXPECT_LT(mesh.vertices.row(1).minCoeff(), 0.0) << scale;
+    EXPECT_EQ(mesh.vertices.row(1).maxCoeff(), 0.0) << scale;
+    mesh.vertices /= mesh.vertices.cwiseAbs().maxCoeff();
+    EXPECT_NEAR(mass_properties(mesh).volume, 1.0 / 6.0, 1e-6) << scale << ": the surface is inside out";
+  }
 }
 
 TEST_F(BadUrdf, NestingDoesNotExhaustTheStack) {

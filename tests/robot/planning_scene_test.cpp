@@ -1,19 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The opponens authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include <algorithm>
-#include <cmath>
-#include <cstdlib>
+#include <cstdint>
 #include <cstring>
-#include <fstream>
 #include <numbers>
 
 #include <gtest/gtest.h>
 
-#include "core/require.hpp"
-#include "robot/load_robot.hpp"
+#include "foreign_scenes.hpp"
 #include "robot/mesh.hpp"
-#include "robot/mesh_check.hpp"
-#include "robot/motion_request.hpp"
 #include "robot/scene.hpp"
 
 namespace opponens::robot {
@@ -21,46 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using MeshPointer = std::shared_ptr<const TriangleMesh>;
-
-class ForeignScenes : public testing::Test {
- protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() /
-              (std::string("opponens_foreign_") + testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::create_directories(folder_ / "package");
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  fs::path write(const std::string& text, const std::string& name) const {
-    std::ofstream(folder_ / name, std::ios::binary) << text;
-    return folder_ / name;
-  }
-
-  template <typename Load>
-  std::string error_of(const Load& load, const std::string& text, const std::string& name) const {
-    try {
-      load(write(text, name));
-    } catch (const InputError& error) {
-      const std::string message = error.what();
-      EXPECT_EQ(message.find('\n'), std::string::npos);
-      EXPECT_NE(message.find(name), std::string::npos) << message;
-      return message;
-    }
-    ADD_FAILURE() << "accepted:\n" << text;
-    return {};
-  }
-
-  std::string scene_error(const std::string& text, const std::string& name = "moveit.yaml") const {
-    return error_of([](const fs::path& file) { load_scene(file); }, text, name);
-  }
-
-  fs::path folder_;
-};
-
-bool has_note(const std::vector<std::string>& notes, const std::string& part) {
-  return std::any_of(notes.begin(), notes.end(),
-                     [&](const std::string& note) { return note.find(part) != std::string::npos; });
-}
 
 const char* const kTetrahedron = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
 
@@ -198,6 +152,33 @@ bodies:
             std::string::npos);
 }
 
+TEST_F(ForeignScenes, MeshesStayInTheirPackage) {
+  write(kTetrahedron, "package/t.obj");
+  write(kTetrahedron, "secret.obj");
+  fs::create_symlink(folder_ / "secret.obj", folder_ / "package/out.obj");
+  fs::create_symlink("t.obj", folder_ / "package/same.obj");
+  const auto scene = [](const std::string& uri) {
+    return "world: {collision_objects: [{id: can, meshes: [{resource: '" + uri +
+           "'}], mesh_poses: [{position: [1, 0, 0], orientation: [0, 0, 0, 1]}]}]}";
+  };
+  const fs::path mine = write("name: mine\nimport: moveit.yaml\npackages: {things: package}\n", "mine.yaml");
+  write(scene("package://things/same.obj"), "moveit.yaml");
+  EXPECT_EQ(load_scene(mine).bodies.size(), 1U);
+  for (const std::string uri : {"package://things/../secret.obj", "package://things/out.obj"}) {
+    write(scene(uri), "moveit.yaml");
+    try {
+      load_scene(mine);
+      ADD_FAILURE() << "accepted " << uri;
+    } catch (const InputError& error) {
+      const std::string message = error.what();
+      EXPECT_NE(message.find("meshes[0].resource: '" + uri + "' leaves its package"), std::string::npos) << message;
+    }
+  }
+  // A package without a path is looked for above the scene's file, as for a URDF.
+  write(scene("package://package/t.obj"), "moveit.yaml");
+  EXPECT_EQ(load_scene(folder_ / "moveit.yaml").bodies.size(), 1U);
+}
+
 TEST_F(ForeignScenes, MistakesNameTheElement) {
   const auto object = [](const std::string& content) {
     return "world:\n  collision_objects:\n    - id: a\n" + content;
@@ -233,11 +214,12 @@ TEST_F(ForeignScenes, MistakesNameTheElement) {
       {posed("{position: [0, 0, 0], orientation: {x: 0, y: 0, z: 0}}"), "has no key 'w'"},
       {object("      operation: remove\n"), "operation: expected add (0), found 'remove'"},
       {mesh("{resource: 'package://p/../../secret.stl'}"),
-       "'package://p/../../secret.stl' lies outside of its package"},
+       "meshes[0].resource: 'package://p/../../secret.stl' leaves its package"},
       {mesh("{resource: 'package://p/a.stl'}"), "package 'p' has no path"},
       {mesh("{resource: absent.stl}"), "absent.stl: no such file"},
       {mesh("{vertices: [[0, 0, 0]], triangles: [[0, 0, 1]]}"), "expected the indices of three of the 1 vertices"},
       {mesh("{vertices: [[0, 0, 0]], triangles: []}"), "a mesh without triangles"},
+      {mesh("{vertices: [[0, 0, 0], [1, 0, 0]], triangles: [[0, 1, 0]]}"), "triangles: a mesh without triangles"},
       {mesh("{}"), "has no key 'vertices'"},
       {"world:\n  collision_objects:\n    - id: ''\n", "id: expected a name"},
   };
@@ -256,183 +238,6 @@ TEST_F(ForeignScenes, AnStlHeaderIsNotBelieved) {
       "world: {collision_objects: [{id: a, meshes: [{resource: huge.stl}], mesh_poses: [{position: [0, 0, 0], "
       "orientation: [0, 0, 0, 1]}]}]}");
   EXPECT_NE(message.find("announces 21474836 triangles"), std::string::npos) << message;
-}
-
-TEST_F(ForeignScenes, ReadsTheTextFormOfBothAges) {
-  const Scene old_form = load_scene(write(R"((noname)+
-* tall can
-1
-cylinder
-0.03 0.2
-1 0 0.1
-0 0 0 1
-0 0 0 0
-* board
-2
-box
-1 2 0.1
-0 0 0
-0 0 0 1
-0 0 0 0
-mesh
-4 4
-0 0 0
-1 0 0
-0 1 0
-0 0 1
-0 2 1
-0 1 3
-0 3 2
-1 2 3
-0 0 1
-0 0 0 1
-0 0 0 0
-.
-)",
-                                          "old.scene"));
-  EXPECT_EQ(old_form.name, "old");
-  EXPECT_EQ(std::get<Cylinder>(old_form.body("tall can").geometry[0].shape).length, 0.2);
-  EXPECT_EQ(old_form.body("board").geometry.size(), 2U);
-  const Scene new_form = load_scene(write(R"(kitchen
-* cup
-1 2 3
-0 0 0 1
-1
-cone
-0.1 0.3
-0 0 0.5
-0 0 0 1
-0 0 0 0
-1
-handle
-0 0 0
-0 0 0 1
-.
-)",
-                                          "new.scene"));
-  EXPECT_EQ(new_form.name, "kitchen");
-  const SceneBody& cup = new_form.body("cup");
-  EXPECT_TRUE((cup.X_WB * cup.geometry[0].X_BG.translation()).isApprox(Eigen::Vector3d(1, 2, 3.5)));
-  EXPECT_TRUE(has_note(new_form.notes, "subframes"));
-}
-
-TEST_F(ForeignScenes, MistakesInTheTextFormNameObjectAndLine) {
-  const std::string head = "s\n* a\n1\n";
-  const std::string pose = "0 0 0\n0 0 0 1\n0 0 0 0\n";
-  const std::vector<std::pair<std::string, std::string>> cases{
-      {"s\nbox\n", ":2: expected '*' before an object or '.' at the end, found 'box'"},
-      {"s\n", "found ''"},
-      {head + "plane\n0 0 1 0\n" + pose + ".\n", ":4: object 'a': a plane"},
-      {head + "torus\n1 1\n" + pose + ".\n", "found 'torus'"},
-      {head + "box\n1 -1 1\n" + pose + ".\n", ":5: object 'a': expected a positive number"},
-      {head + "box\n1 1 nan\n" + pose + ".\n", "expected a finite number, found 'nan'"},
-      {head + "sphere\n1\n0 0 0\n0 0 0 0\n0 0 0 0\n.\n", "unit quaternion"},
-      {head + "mesh\n100000000 100000000\n", "announces 100000000 vertices"},
-      {"s\n* a\n0\n.\n", "needs at least one shape"},
-      {head + "sphere\n1\n" + pose + "* a\n1\nsphere\n1\n" + pose + ".\n", "two objects of that name"},
-  };
-  for (const auto& [text, expected] : cases) {
-    const std::string message = scene_error(text, "bad.scene");
-    EXPECT_NE(message.find(expected), std::string::npos) << "expected: " << expected << "\nmessage:  " << message;
-  }
-}
-
-TEST_F(ForeignScenes, ReadsARequestAndCompletesIt) {
-  const MotionRequest request = load_motion_request(write(R"(group_name: arm
-start_state: {joint_state: {name: [shoulder_pan_joint, gripper], position: [1, 2]}}
-goal_constraints:
-  - joint_constraints: [{joint_name: elbow_joint, position: 0.5, tolerance_above: 0.1}]
-  - joint_constraints: [{joint_name: elbow_joint, position: -0.5}]
-path_constraints: {joint_constraints: [{joint_name: a, position: 0}]}
-)",
-                                                          "request.yaml"));
-  EXPECT_EQ(request.name, "request");
-  EXPECT_EQ(request.group, "arm");
-  ASSERT_EQ(request.goals.size(), 2U);
-  EXPECT_TRUE(has_note(request.notes, "path_constraints: ignored"));
-  const RobotModel robot(load_robot(fs::path(OPPONENS_SOURCE_DIR) / "models/ur5_allegro/ur5_allegro_right.yaml"));
-  Eigen::VectorXd fallback = Eigen::VectorXd::Constant(robot.dof(), 0.25);
-  const Completed start = complete(robot, request.start, fallback);
-  EXPECT_EQ(start.unknown, std::vector<std::string>{"gripper"});
-  EXPECT_EQ(static_cast<int>(start.assumed.size()), robot.dof() - 1);
-  fallback[0] = 1.0;
-  EXPECT_EQ(start.q, fallback);
-  const Completed goal = complete(robot, request.goals[1], start.q);
-  fallback[2] = -0.5;
-  EXPECT_EQ(goal.q, fallback);
-}
-
-TEST_F(ForeignScenes, MistakesInRequestsNameTheElement) {
-  const std::string start = "start_state: {joint_state: {name: [a], position: [0]}}\n";
-  const std::vector<std::pair<std::string, std::string>> cases{
-      {start, "has no key 'goal_constraints'"},
-      {start + "goal_constraints: []\n", "expected at least one goal"},
-      {start + "goal_constraints: [{position_constraints: [{link_name: a}]}]\n", "expected joint_constraints"},
-      {start + "goal_constraints: [{joint_constraints: [{joint_name: a}]}]\n", "has no key 'position'"},
-      {start + "goal_constraints: [{joint_constraints: [{joint_name: a, position: .inf}]}]\n", "finite number"},
-      {start +
-           "goal_constraints: [{joint_constraints: [{joint_name: a, position: 0}, {joint_name: a, position: 1}]}]\n",
-       "joint 'a' occurs twice"},
-      {"start_state: {joint_state: {name: [a, b], position: [0]}}\ngoal_constraints: []\n",
-       "position: expected 2 numbers, found 1"},
-  };
-  for (const auto& [text, expected] : cases) {
-    const std::string message = error_of([](const fs::path& file) { load_motion_request(file); }, text, "request.yaml");
-    EXPECT_NE(message.find(expected), std::string::npos) << "expected: " << expected << "\nmessage:  " << message;
-  }
-}
-
-TEST(MotionBenchMaker, EverySceneAndRequestLoads) {
-  const fs::path root = fs::path(OPPONENS_SHARED_DATA) / "data/scenes";
-  if (!fs::exists(root)) GTEST_SKIP() << "needs " << root;
-  int scenes = 0;
-  int requests = 0;
-  for (const auto& entry : fs::recursive_directory_iterator(root)) {
-    const std::string name = entry.path().filename().string();
-    if (entry.path().extension() != ".yaml") continue;
-    if (name.starts_with("request")) {
-      const MotionRequest request = load_motion_request(entry.path());
-      EXPECT_EQ(request.start.names.size(), 12U) << name;
-      EXPECT_EQ(request.goals.size(), 1U) << name;
-      EXPECT_EQ(request.goals[0].names.size(), 6U) << name;
-      ++requests;
-    } else if (name.starts_with("scene")) {
-      const Scene scene = load_scene(entry.path());
-      EXPECT_GE(scene.bodies.size(), 6U) << name;
-      EXPECT_TRUE(mesh_warnings(scene).empty()) << name;
-      ++scenes;
-    }
-  }
-  EXPECT_EQ(requests, 60);
-  EXPECT_EQ(scenes, 67);  // 60 problems and 7 nominal scenes
-}
-
-/// The query of the table problems puts the tool 0.2 m in front of the can and 25 mm above its middle. That holds for
-/// the base that docs/scene_files.md names, and ties arm, object poses, shape poses and base together.
-TEST(MotionBenchMaker, GoalsPutTheToolBeforeTheCan) {
-  const fs::path shared = OPPONENS_SHARED_DATA;
-  if (!fs::exists(shared / "data/scenes")) GTEST_SKIP() << "needs " << shared;
-  ASSERT_EQ(setenv("OPPONENS_ROBOT_DATA", (shared / "data/robots").c_str(), 1), 0);
-  const RobotModel robot(load_robot(fs::path(OPPONENS_SOURCE_DIR) / "experiments/motion_bench_maker/ur5.yaml"));
-  EXPECT_EQ(robot.dof(), 6);
-  EXPECT_TRUE(robot.description().hand_joints.empty());
-  Eigen::Isometry3d X_WR = Eigen::Isometry3d::Identity();
-  X_WR.linear() = Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  X_WR.translation().z() = 0.9144;
-  const auto tool = static_cast<std::size_t>(robot.link_index("tool0"));
-  for (int i = 1; i <= 20; ++i) {
-    const std::string number = (i < 10 ? "000" : "00") + std::to_string(i) + ".yaml";
-    const fs::path folder = shared / "data/scenes/ur5_problems/table_pick_ur5";
-    const Scene scene = load_scene(folder / ("scene" + number));
-    const MotionRequest request = load_motion_request(folder / ("request" + number));
-    const Completed goal = complete(robot, request.goals[0], Eigen::VectorXd::Zero(6));
-    const Eigen::Isometry3d X_WT = X_WR * robot.link_poses(goal.q)[tool];
-    const SceneBody& can = scene.body("Can1");
-    const Eigen::Vector3d p_TC = X_WT.inverse() * (can.X_WB * can.geometry[0].X_BG.translation());
-    EXPECT_NEAR(p_TC.z(), 0.2, 0.01) << number;
-    EXPECT_NEAR((X_WT.linear() * p_TC).z(), -0.025, 0.005) << number;
-    EXPECT_NEAR(p_TC.head<2>().norm(), 0.025, 0.005) << number;
-  }
 }
 
 }  // namespace

@@ -118,6 +118,8 @@ TEST_F(SceneFiles, EveryMistakeNamesLineFieldAndExpectation) {
        "OPPONENS_NOT_SET_ANYWHERE is not set"},
       {head + "      - {mesh: {file: a.stl, unit: inch}}\n", "expected m, cm, mm or in, found 'inch'"},
       {head + "      - {mesh: {file: a.stl, scale: 0}}\n", "scale: expected a positive factor"},
+      {head + "      - {mesh: {file: a.stl, scale: [1, -1, 1]}}\n", "scale: expected a positive factor"},
+      {head + "      - {mesh: {file: a.stl, unit: mm, scale: 1e-323}}\n", "scale: leaves nothing of the mesh"},
       {head + "      - {revolution: {profile: [[0.1, 0], [0.1, -1]]}}\n", "does not rise"},
       {head + "      - {revolution: {profile: [[0.1, 0], [0.1, 1]], segments: 2.5}}\n", "whole number from 3"},
       {"name: s\nbodies:\n  - {name: a, geometry: []}\n", "'a' needs at least one shape"},

@@ -14,6 +14,7 @@
 #include "core/rng.hpp"
 #include "robot/load_robot.hpp"
 #include "robot_test.hpp"
+#include "tests/support/sample_count.hpp"
 
 namespace opponens::robot {
 namespace {
@@ -191,7 +192,7 @@ void check_round_trips(const RobotModel& robot, int samples, const Nearness& nea
       robot.description().name.c_str(), samples, arm.deviation(), largest_residual, largest_plain, largest_missing);
 }
 
-constexpr int kSamples = 100000;
+constexpr int kSamples = sample_count(100000);
 
 TEST(UrKinematics, RoundTripsOnOurRobot) { check_round_trips(RobotModel(load_robot(our_robot())), kSamples); }
 
@@ -290,7 +291,7 @@ TEST(UrKinematics, RoundTripsOnAnArmPrintedWithFewDigits) {
   }
   const RobotModel robot(description);
   EXPECT_GT(analytic(robot).deviation(), 1e-9);
-  check_round_trips(robot, 20000, {1e-7, false});
+  check_round_trips(robot, sample_count(20000), {1e-7, false});
 }
 
 TEST(UrKinematics, RefusesOtherArms) {
