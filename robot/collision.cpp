@@ -187,14 +187,16 @@ struct CollisionChecker::World {
     }
   }
 
-  /// Sweeps a whole batch so.
+  /// Sweeps a whole batch so. first_only: its first row alone, as the end of a motion decides more often than others.
   template <typename Verdict>
   void sweep_batch(const ConfigurationBatch& batch, const Verdict& verdict, CollisionCounts& counts,
                    bool first_only) const {
     require_batch(batch);
     bool ended = false;
-    for (int first = 0; first < batch.rows() && !ended; first += wide::kLanes) {
-      const int count = std::min(wide::kLanes, static_cast<int>(batch.rows()) - first);
+    int count = 0;
+    for (int first = 0; first < batch.rows() && !ended; first += count) {
+      const int most = first_only && first == 0 ? 1 : wide::kLanes;
+      count = std::min(most, static_cast<int>(batch.rows()) - first);
       sweep_rows(
           batch, first, count, [&](int row, bool free) { return ended = verdict(row, free); }, counts, first_only);
     }

@@ -3,12 +3,12 @@
 // Meshes of all sorts, and points of their solids, for the tests of what contains them.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <numbers>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -123,20 +123,21 @@ inline std::vector<Case> cases() {
 /// Meshes of the laboratory's robot and of scanned objects.
 inline std::vector<std::shared_ptr<const TriangleMesh>> real_meshes() {
   setenv("OPPONENS_SHARED_DATA", OPPONENS_SHARED_DATA, 1);
-  std::set<std::shared_ptr<const TriangleMesh>> meshes;
+  std::vector<std::shared_ptr<const TriangleMesh>> meshes;  // each once, in the order of the files
   for (const char* file : {"paper_lab_ur5_allegro_right_visual.yaml", "example_ur5_allegro_right.yaml"}) {
     for (const Link& link : load_robot(std::filesystem::path(OPPONENS_SOURCE_DIR "/tests/data/robots") / file).links) {
       for (const Geometry& geometry : link.collision) {
-        if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&geometry.shape)) meshes.insert(*mesh);
+        const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&geometry.shape);
+        if (mesh != nullptr && std::find(meshes.begin(), meshes.end(), *mesh) == meshes.end()) meshes.push_back(*mesh);
       }
     }
   }
   const std::filesystem::path objects = OPPONENS_SHARED_DATA "/data/objects";
   for (const char* name : {"ycb/065-g_cups/065-g_cups.obj", "ycb/011_banana/011_banana.obj",
                            "ycb/035_power_drill/035_power_drill.obj", "graspit/mug.obj", "mbm_pregrasp/mug.stl"}) {
-    if (std::filesystem::exists(objects / name)) meshes.insert(load_mesh(objects / name));
+    if (std::filesystem::exists(objects / name)) meshes.push_back(load_mesh(objects / name));
   }
-  return {meshes.begin(), meshes.end()};
+  return meshes;
 }
 
 }  // namespace opponens::robot
