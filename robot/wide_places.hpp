@@ -155,6 +155,7 @@ struct SingleScratch {
 
 /// The centers of the robot's balls, kLanes in a row. Places beyond the last part repeat it.
 [[gnu::always_inline]] inline void place_balls(const RoundedPose* X, const SpreadPart* parts, int count, V3* rows) {
+  if (count == 0) return;
   const SpreadPart* const last = parts + (count - 1);
   for (int first = 0; first < count; first += kLanes) {
     V centers[kLanes];
