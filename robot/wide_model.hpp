@@ -188,8 +188,8 @@ int sweep_avx2(const Model& model, const Query& query, float* workspace, Unknown
 
 /// The same for one configuration (lane 0), with a smaller margin as kinematics are in double precision. Stops at the
 /// first pair that touches, which is then the last that it writes.
-int sweep_single(const Model& model, const SingleQuery& query, float* workspace, Unknown* found);
-int sweep_single_avx2(const Model& model, const SingleQuery& query, float* workspace, Unknown* found);
+int sweep(const Model& model, const SingleQuery& query, float* workspace, Unknown* found);
+int sweep_avx2(const Model& model, const SingleQuery& query, float* workspace, Unknown* found);
 
 /// Index of the point farthest along n of a padded list, [3 x count]: one coordinate after the other.
 int farthest_portable(const float* xyz, int count, const float* n);

@@ -14,7 +14,7 @@ int sweep(const Model& model, const Query& query, float* workspace, Unknown* fou
   return run_sweep(model, query, workspace, found);
 }
 
-int sweep_single(const Model& model, const SingleQuery& query, float* workspace, Unknown* found) {
+int sweep(const Model& model, const SingleQuery& query, float* workspace, Unknown* found) {
   return run_single(model, query, workspace, found);
 }
 

@@ -11,7 +11,7 @@ int sweep_avx2(const Model& model, const Query& query, float* workspace, Unknown
   return run_sweep(model, query, workspace, found);
 }
 
-int sweep_single_avx2(const Model& model, const SingleQuery& query, float* workspace, Unknown* found) {
+int sweep_avx2(const Model& model, const SingleQuery& query, float* workspace, Unknown* found) {
   return run_single(model, query, workspace, found);
 }
 

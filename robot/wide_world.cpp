@@ -236,7 +236,8 @@ float* World::workspace(Buffers& buffers, const Model& model) const {
   return buffers.memory.data() + (kAlignment - address % kAlignment) % kAlignment / sizeof(float);
 }
 
-int World::sweep(const Query& query, Buffers& buffers, bool portable) const {
+template <typename AnyQuery>
+int World::sweep(const AnyQuery& query, Buffers& buffers, bool portable) const {
   const Model arrays = model();
   float* const memory = workspace(buffers, arrays);
 #if defined(OPPONENS_AVX2)
@@ -246,16 +247,7 @@ int World::sweep(const Query& query, Buffers& buffers, bool portable) const {
   (void)portable;
   return wide::sweep(arrays, query, memory, buffers.found.data());
 }
-
-int World::sweep(const SingleQuery& query, Buffers& buffers, bool portable) const {
-  const Model arrays = model();
-  float* const memory = workspace(buffers, arrays);
-#if defined(OPPONENS_AVX2)
-  static const bool fast = has_avx2();
-  if (fast && !portable) return sweep_single_avx2(arrays, query, memory, buffers.found.data());
-#endif
-  (void)portable;
-  return sweep_single(arrays, query, memory, buffers.found.data());
-}
+template int World::sweep(const Query& query, Buffers& buffers, bool portable) const;
+template int World::sweep(const SingleQuery& query, Buffers& buffers, bool portable) const;
 
 }  // namespace opponens::robot::wide

@@ -51,8 +51,9 @@ class World {
     std::vector<Unknown> found;
   };
   /// Writes every pair that may touch to the beginning of buffers.found and returns how many there are.
-  int sweep(const Query& query, Buffers& buffers, bool portable) const;
-  int sweep(const SingleQuery& query, Buffers& buffers, bool portable) const;
+  /// AnyQuery: Query or SingleQuery.
+  template <typename AnyQuery>
+  int sweep(const AnyQuery& query, Buffers& buffers, bool portable) const;
 
   /// m, by which every ball and box is enlarged: at least twice the errors of the sweep's arithmetic. 2e-5 times the
   /// largest coordinate, of which rounding of angles (2e-7 rad for each joint of a chain, times its reach), of sines

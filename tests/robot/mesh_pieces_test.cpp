@@ -33,7 +33,7 @@ bool may_hold(const HullVertices& piece, const SphereTree::Node& node, const Vec
   return convex_relation({&piece, node.center}, point, at(p.x(), p.y(), p.z()), 0.0, 0.0) != Convex::apart;
 }
 
-/// Whether a way through balls that contain p leads to a piece that does. It must for every point of the solid.
+/// Whether a way through balls that contain p leads to a piece that does. It must for every point of the surface.
 bool held(const MeshCover& cover, std::size_t index, const Vector3d& p) {
   const SphereTree::Node& node = cover.tree.nodes[index];
   if ((p - node.center).norm() > node.radius * (1.0 + 1e-12)) return false;
