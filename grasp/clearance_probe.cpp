@@ -8,79 +8,133 @@
 namespace opponens::grasp {
 namespace {
 
-constexpr double kExactWithin = 0.004;     // m, nearer points are measured on the mesh instead of the grid
+constexpr double kExactWithin = 0.002;  // m, nearer points are measured on the mesh instead of the grid
+constexpr std::size_t kMeasured = 5;    // of them
+constexpr double kBand = 0.0005;        // m, of rough distances among which the nearest point is looked for
+constexpr std::size_t kEnough = 40;     // such points: a flat palm on a flat side has a thousand
+constexpr double kFarShare = 0.9;       // of a distance beyond kExactWithin: a nearer point within it is not looked for
 constexpr double kObstacleMargin = 0.003;  // m, a finger stops this far from support and obstacles
 constexpr double kSelfMargin = 0.001;      // m, and this far from the hand's other links
 constexpr double kFar = 0.05;              // m, distances beyond it do not matter
+constexpr double kSpare = 0.0003;          // m, more than kTouch, by which the excused may come nearer still
 
 }  // namespace
 
-Clearance ClearanceProbe::operator()(const HandPose& pose, const std::vector<int>& links, Watch watch) {
+ClearanceProbe::ClearanceProbe(const ClosingScene& scene)
+    : scene_(scene), obstacle_margin_(kObstacleMargin), self_margin_(kSelfMargin) {}
+
+void ClearanceProbe::place(const HandPose& pose) {
   scene_.hand.link_poses(pose.q, X_HL_);
-  near_.clear();
-  Clearance least{kFar, -1, Eigen::Vector3d::Zero()};
-  for (const int link : links) look_at_object(pose.X_OH, static_cast<std::size_t>(link), least);
-  // Most promising first: once a point's rough distance exceeds the best by the grid's error, the rest cannot win.
-  std::sort(near_.begin(), near_.end(), [](const Near& a, const Near& b) { return a.rough < b.rough; });
-  // Deep inside, the rough depth is enough: it only tells how far to move before asking again.
-  if (!near_.empty() && near_.front().rough < -2.0 * scene_.target.grid->spacing()) {
-    return {near_.front().rough, near_.front().link, near_.front().p_O};
-  }
-  for (const Near& point : near_) {
-    if (point.rough > least.value + scene_.target.grid->spacing()) break;
-    const double exact = scene_.target.distance->signed_distance(point.p_O);
-    if (exact < least.value) least = {exact, point.link, point.p_O};
-  }
+  center_H_.resize(X_HL_.size());
+  for (std::size_t i = 0; i < X_HL_.size(); ++i) center_H_[i] = X_HL_[i] * scene_.surface.link_center[i];
+}
+
+double ClearanceProbe::hand_clearance(const HandPose& pose, const std::vector<int>& links) {
+  place(pose);
+  self_margin_ = kSelfMargin;
+  double least = kFar;
+  for (const int link : links) least = from_hand(static_cast<std::size_t>(link), least);
+  return least;
+}
+
+void ClearanceProbe::excuse(const HandPose& pose, const std::vector<int>& links) {
+  place(pose);
+  obstacle_margin_ = kObstacleMargin;
+  self_margin_ = kSelfMargin;
+  double obstacles = kSpare;
+  double hand = kSpare;
   for (const int link : links) {
-    if (watch != Watch::object) look_at_obstacles(pose.X_OH, static_cast<std::size_t>(link), least);
-    if (watch == Watch::everything) look_at_hand(static_cast<std::size_t>(link), least);
+    obstacles = from_obstacles(pose.X_OH, static_cast<std::size_t>(link), obstacles);
+    hand = from_hand(static_cast<std::size_t>(link), hand);
+  }
+  obstacle_margin_ += obstacles - kSpare;
+  self_margin_ += hand - kSpare;
+}
+
+Clearance ClearanceProbe::operator()(const HandPose& pose, const std::vector<int>& links, Watch watch) {
+  place(pose);
+  near_.clear();
+  Clearance least{kFar, kFar};
+  for (const int link : links) look_at_object(pose.X_OH, static_cast<std::size_t>(link), least);
+  // Deep inside, the rough depth is enough: it only tells how far to move before asking again.
+  const bool deep = least.object < -2.0 * scene_.target.grid->spacing();
+  if (!near_.empty() && !deep) measure(least);
+  if (watch == Watch::object) return least;
+  for (const int link : links) {
+    least.others = from_obstacles(pose.X_OH, static_cast<std::size_t>(link), least.others);
+    if (watch == Watch::everything) least.others = from_hand(static_cast<std::size_t>(link), least.others);
   }
   return least;
 }
 
 void ClearanceProbe::look_at_object(const Eigen::Isometry3d& X_OH, std::size_t link, Clearance& least) {
   const DistanceGrid& grid = *scene_.target.grid;
-  const Eigen::Isometry3d X_OL = X_OH * X_HL_[link];
-  const double bound = grid.value(X_OL * scene_.surface.link_center[link]) - scene_.surface.link_radius[link];
-  if (bound - grid.spacing() > least.value) return;
-  for (const Eigen::Vector3d& p_L : scene_.surface.medium[link]) {
-    const Eigen::Vector3d p_O = X_OL * p_L;
-    const double rough = grid.value(p_O);
-    if (rough < kExactWithin) {
-      near_.push_back({rough, static_cast<int>(link), p_O});
-    } else if (rough < least.value) {
-      least = {rough, static_cast<int>(link), p_O};
-    }
+  // Near the surface, points little farther than the rough minimum may be the nearest in truth; far from it a tenth of
+  // the distance does not matter.
+  const auto bound = [&] {
+    if (least.object >= kExactWithin) return kFarShare * least.object;
+    return near_.size() < kEnough ? std::min(least.object + kBand, kExactWithin) : least.object;
+  };
+  scene_.surface.shapes[link]->points.descend([&grid](const Eigen::Vector3d& p_O) { return grid.bound(p_O); },
+                                              X_OH * X_HL_[link], bound(),
+                                              [&](const Eigen::Vector3d&, const Eigen::Vector3d& p_O) {
+                                                const double rough = grid.value(p_O);
+                                                if (rough < kExactWithin && rough < bound())
+                                                  near_.push_back({rough, static_cast<int>(link), p_O});
+                                                if (rough < least.object) {
+                                                  least.object = rough;
+                                                  least.link = static_cast<int>(link);
+                                                  least.p_O = p_O;
+                                                }
+                                                return bound();
+                                              });
+}
+
+/// Replaces the rough least distance by the exact one of the points that are likeliest to have it.
+void ClearanceProbe::measure(Clearance& least) {
+  const std::size_t count = std::min(kMeasured, near_.size());
+  std::partial_sort(near_.begin(), near_.begin() + static_cast<std::ptrdiff_t>(count), near_.end(),
+                    [](const Near& a, const Near& b) { return a.rough < b.rough; });
+  least.object = kFar;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Near& point = near_[i];
+    if (point.rough > least.object + scene_.target.grid->spacing()) break;  // once this far off, the rest cannot win
+    const double exact = scene_.target.distance->signed_distance(point.p_O);
+    if (exact >= least.object) continue;
+    least.object = exact;
+    least.link = point.link;
+    least.p_O = point.p_O;
   }
 }
 
-void ClearanceProbe::look_at_obstacles(const Eigen::Isometry3d& X_OH, std::size_t link, Clearance& least) const {
-  const Eigen::Isometry3d X_OL = X_OH * X_HL_[link];
-  const double radius = scene_.surface.link_radius[link];
-  const Eigen::Vector3d center = X_OL * scene_.surface.link_center[link];
-  if (scene_.target.obstacle_distance(center, kFar).value - radius - kObstacleMargin > least.value) return;
-  for (const Eigen::Vector3d& p_L : scene_.surface.medium[link]) {
-    const double horizon = std::max(least.value, 0.0) + kObstacleMargin;  // farther does not matter
-    const double free = scene_.target.obstacle_distance(X_OL * p_L, horizon).value - kObstacleMargin;
-    if (free < least.value) least = {free, -1, Eigen::Vector3d::Zero()};
-  }
+double ClearanceProbe::from_obstacles(const Eigen::Isometry3d& X_OH, std::size_t link, double least) const {
+  if (scene_.target.obstacles.empty()) return least;
+  const auto distance = [this](const Eigen::Vector3d& p_O) { return scene_.target.obstacle_distance(p_O, kFar).value; };
+  return nearest(distance, link, X_OH * X_HL_[link], obstacle_margin_, least);
 }
 
-void ClearanceProbe::look_at_hand(std::size_t link, Clearance& least) const {
-  for (const int stranger : scene_.surface.strangers[link]) {
+double ClearanceProbe::from_hand(std::size_t link, double least) const {
+  const HandSurface& surface = scene_.surface;
+  for (const int stranger : surface.strangers[link]) {
     const auto other = static_cast<std::size_t>(stranger);
-    const Eigen::Isometry3d X_BA = X_HL_[other].inverse() * X_HL_[link];
-    const double apart = (X_BA * scene_.surface.link_center[link] - scene_.surface.link_center[other]).norm();
-    const double bound = apart - scene_.surface.link_radius[link] - scene_.surface.link_radius[other];
-    if (bound - kSelfMargin > least.value) continue;
-    for (const Eigen::Vector3d& p_A : scene_.surface.coarse[link]) {
-      const Eigen::Vector3d p_B = X_BA * p_A;
-      const double reach = std::max(least.value + kSelfMargin, 0.0) + scene_.surface.link_radius[other];
-      if ((p_B - scene_.surface.link_center[other]).squaredNorm() > reach * reach) continue;
-      const double free = scene_.surface.links[other].query(p_B, kFar).value - kSelfMargin;
-      if (free < least.value) least = {free, -1, Eigen::Vector3d::Zero()};
-    }
+    const double reach = surface.link_radius[link] + surface.link_radius[other] + least + self_margin_;
+    if ((center_H_[link] - center_H_[other]).squaredNorm() > reach * reach) continue;
+    const auto distance = [&](const Eigen::Vector3d& p_B) { return surface.shapes[other]->rough(p_B); };
+    least = nearest(distance, link, X_HL_[other].inverse() * X_HL_[link], self_margin_, least);
   }
+  return least;
+}
+
+template <typename Distance>
+double ClearanceProbe::nearest(const Distance& distance, std::size_t link, const Eigen::Isometry3d& X, double margin,
+                               double least) const {
+  const auto bound = [&] { return margin + (least < kExactWithin ? least : kFarShare * least); };
+  scene_.surface.shapes[link]->points.descend(distance, X, bound(),
+                                              [&](const Eigen::Vector3d&, const Eigen::Vector3d& p) {
+                                                least = std::min(least, distance(p) - margin);
+                                                return bound();
+                                              });
+  return least;
 }
 
 }  // namespace opponens::grasp

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <limits>
 #include <vector>
 
 #include "grasp/close_hand.hpp"
@@ -10,8 +9,9 @@
 namespace opponens::grasp {
 
 struct Clearance {
-  double value = std::numeric_limits<double>::infinity();  ///< m
-  int link = -1;  ///< the link that is nearest to the object; -1: something else is nearer, or all is far
+  double object;  ///< m
+  double others;  ///< m, from obstacles less 3 mm and the hand's other links less 1 mm; 5 cm when they are not watched
+  int link = -1;  ///< that is nearest to the object; -1: it is farther than 5 cm
   Eigen::Vector3d p_O = Eigen::Vector3d::Zero();  ///< that link's nearest point
 };
 
@@ -22,13 +22,21 @@ enum class Watch {
   everything,    ///< and the hand's other links
 };
 
-/// Least distance of the links' sampled points to what they watch for; obstacles less 3 mm and other links less 1 mm,
-/// so that a closing finger stops short of them. At most 5 cm. Keeps its memory between calls: one per thread.
+/// Least distances of the links' surface points to what they watch for, at most 5 cm. Beyond 2 mm they may be a tenth
+/// too small. Distances to the object come from its grid; within 2 mm those of the five least points are measured on
+/// the mesh. Keeps its memory between calls: one per thread.
 class ClearanceProbe {
  public:
-  explicit ClearanceProbe(const ClosingScene& scene) : scene_(scene) {}
+  explicit ClearanceProbe(const ClosingScene& scene);
 
   Clearance operator()(const HandPose& pose, const std::vector<int>& links, Watch watch);
+
+  /// Of the links from the hand's other links alone, less 1 mm, m.
+  double hand_clearance(const HandPose& pose, const std::vector<int>& links);
+
+  /// From now on obstacles and other links may come as near as they are at this pose, but not nearer than the margins
+  /// where they are farther: what is too near already must not keep a finger from moving on or away.
+  void excuse(const HandPose& pose, const std::vector<int>& links);
 
   /// Of the last pose asked for.
   const std::vector<Eigen::Isometry3d>& link_poses() const { return X_HL_; }
@@ -39,13 +47,22 @@ class ClearanceProbe {
     int link;
     Eigen::Vector3d p_O;
   };
+  void place(const HandPose& pose);
   void look_at_object(const Eigen::Isometry3d& X_OH, std::size_t link, Clearance& least);
-  void look_at_obstacles(const Eigen::Isometry3d& X_OH, std::size_t link, Clearance& least) const;
-  void look_at_hand(std::size_t link, Clearance& least) const;
+  void measure(Clearance& least);
+  /// The lesser of `least` and the link's distance less the margin.
+  double from_obstacles(const Eigen::Isometry3d& X_OH, std::size_t link, double least) const;
+  double from_hand(std::size_t link, double least) const;
+  template <typename Distance>
+  double nearest(const Distance& distance, std::size_t link, const Eigen::Isometry3d& X, double margin,
+                 double least) const;
 
   const ClosingScene& scene_;
   std::vector<Eigen::Isometry3d> X_HL_;
+  std::vector<Eigen::Vector3d> center_H_;  ///< of the links' bounding spheres
   std::vector<Near> near_;
+  double obstacle_margin_;
+  double self_margin_;
 };
 
 }  // namespace opponens::grasp

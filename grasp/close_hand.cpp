@@ -16,12 +16,13 @@ namespace {
 constexpr double kTouch = 0.0002;      // m, contact is met within this
 constexpr double kMaxRetreat = 0.03;   // m
 constexpr double kMaxAdvance = 0.02;   // m
-constexpr double kMaxTravel = 0.5;     // rad of the fastest joint of a finger
+constexpr double kMaxTravel = 1.2;     // rad of the fastest joint of a finger
 constexpr double kMaxOpening = 1.2;    // rad
 constexpr double kOpeningStep = 0.06;  // rad
 constexpr double kMaxPush = 0.2;       // rad of one joint in one step
 constexpr int kMaxPushes = 25;
 constexpr int kMaxSteps = 80;
+constexpr double kLook = 0.004;  // m
 
 /// A one-parameter motion s -> pose with a bound of how fast its points move, m per unit of s.
 struct Motion {
@@ -36,21 +37,27 @@ struct Stop {
   bool touched;
 };
 
-/// Follows a motion from a clear pose until the links are kTouch or less from the object, by steps no longer than the
-/// clearance allows; an overshoot (speed is an estimate) is taken back by bisection.
+/// Follows a motion from a clear pose until the links are kTouch or less from the object or come too near to something
+/// else, by steps no longer than the clearance allows; an overshoot (speed is an estimate) is taken back by bisection.
+/// What is beside the way must not make the steps small: it is looked at every kLook, and no link is thinner.
 Stop advance(const Motion& motion, const std::vector<int>& links, Watch watch, ClearanceProbe& probe) {
   double clear = 0.0;
   Clearance at_clear = probe(motion.pose(0.0), links, watch);
-  double blocked = -1.0;
+  double approach = motion.speed;  // m per unit of s, of the last step towards the object
+  double blocked = std::numeric_limits<double>::infinity();
   for (int step = 0; step < kMaxSteps; ++step) {
-    if (at_clear.value <= kTouch) return {clear, at_clear, true};
-    if (clear >= motion.end) return {motion.end, at_clear, false};
-    double s = std::min(motion.end, clear + std::max(0.8 * at_clear.value, 0.5 * kTouch) / motion.speed);
-    if (blocked >= 0.0 && s >= blocked) s = 0.5 * (clear + blocked);
+    if (at_clear.object <= kTouch) return {clear, at_clear, true};
+    if (clear >= motion.end || (blocked - clear) * motion.speed < 0.5 * kTouch) break;
+    const double room = std::min(at_clear.object, std::max(at_clear.others, kLook));
+    const double touch = (at_clear.object - 0.5 * kTouch) / std::max(approach, 0.05 * motion.speed);
+    const double ahead = at_clear.object < kLook ? std::min(touch, kLook / motion.speed) : 0.0;
+    double s = std::min(motion.end, clear + std::max({0.8 * room / motion.speed, 0.5 * kTouch / motion.speed, ahead}));
+    if (s >= blocked) s = 0.5 * (clear + blocked);
     const Clearance here = probe(motion.pose(s), links, watch);
-    if (here.value < 0.0) {
+    if (here.object < 0.0 || here.others < 0.0) {
       blocked = s;
     } else {
+      approach = (at_clear.object - here.object) / (s - clear);
       clear = s;
       at_clear = here;
     }
@@ -64,18 +71,22 @@ double largest(const Eigen::VectorXd& direction, const std::vector<int>& joints)
   return value;
 }
 
-/// Opens a finger against the closing direction until it is clear; nullopt when that does not free it.
+/// Opens a finger against the closing direction until it is clear of the object and, where that is possible, of the
+/// hand's other links; nullopt when that does not free it from the object.
 std::optional<HandPose> open_finger(const ClosingScene& scene, const Finger& finger, const HandPose& start,
                                     ClearanceProbe& probe) {
   const double fastest = std::max(largest(scene.direction, finger.joints), 0.05);
+  std::optional<HandPose> freed;
   HandPose pose = start;
   for (double s = 0.0; s <= kMaxOpening; s += kOpeningStep) {
     pose.q = start.q;
     for (const int j : finger.joints) pose.q[j] -= s / fastest * scene.direction[j];
     pose.q = scene.hand.clip(pose.q);
-    if (probe(pose, finger.links, Watch::object).value > kTouch) return pose;
+    if (probe(pose, finger.links, Watch::object).object <= kTouch) continue;
+    if (!freed) freed = pose;
+    if (probe.hand_clearance(pose, finger.links) > kTouch) return pose;
   }
-  return std::nullopt;
+  return freed;
 }
 
 /// Moves a finger out of the object by the least joint motion that lifts its deepest point, again and again; nullopt
@@ -85,7 +96,7 @@ std::optional<HandPose> push_out(const ClosingScene& scene, const Finger& finger
   HandPose pose = start;
   for (int step = 0; step < kMaxPushes; ++step) {
     const Clearance deepest = probe(pose, finger.links, Watch::object);
-    if (deepest.value > kTouch) return pose;
+    if (deepest.object > kTouch) return pose;
     const Eigen::Vector3d out = pose.X_OH.linear().transpose() * scene.target.grid->query(deepest.p_O).gradient;
     const Eigen::VectorXd slope =
         scene.hand.point_jacobian(probe.link_poses(), deepest.link, pose.X_OH.inverse() * deepest.p_O).transpose() *
@@ -94,7 +105,7 @@ std::optional<HandPose> push_out(const ClosingScene& scene, const Finger& finger
     for (const int j : finger.joints) motion[j] = slope[j];
     const double reach = motion.squaredNorm();
     if (reach < 1e-8) return std::nullopt;
-    motion *= (2.0 * kTouch - deepest.value) / reach;
+    motion *= (2.0 * kTouch - deepest.object) / reach;
     const double turn = largest(motion, finger.joints);
     pose.q = scene.hand.clip(pose.q + std::min(1.0, kMaxPush / turn) * motion);
   }
@@ -106,7 +117,7 @@ bool retreat(const ClosingScene& scene, HandPose& pose, ClearanceProbe& probe) {
   const Eigen::Vector3d back = -(pose.X_OH.linear() * scene.surface.approach);
   double moved = 0.0;
   while (true) {
-    const double clearance = probe(pose, scene.surface.palm_links, Watch::object).value;
+    const double clearance = probe(pose, scene.surface.palm_links, Watch::object).object;
     if (clearance >= 0.0) return true;
     const double step = kTouch - clearance;
     moved += step;
@@ -161,6 +172,7 @@ bool close_finger(const ClosingScene& scene, const Finger& finger, const Eigen::
   for (const int j : finger.joints) moving[j] = direction[j];
   const HandPose before = pose;
   std::vector<int> links = finger.links;
+  probe.excuse(pose, links);
   bool met = false;
   while (largest(moving, finger.joints) > 0.02 && !links.empty()) {
     const HandPose start = pose;
@@ -169,9 +181,7 @@ bool close_finger(const ClosingScene& scene, const Finger& finger, const Eigen::
     const Motion motion{at, finger_speed(scene, finger, moving, probe.link_poses()),
                         kMaxTravel / largest(moving, finger.joints)};
     const Stop stop = advance(motion, links, Watch::everything, probe);
-    const bool touched = stop.touched && stop.clearance.link >= 0;
-    if (!touched && !met) break;
-    if (!touched) break;  // the rest of a finger that already touches stays as it is
+    if (!stop.touched) break;  // the rest of a finger that already touches stays as it is
     pose = at(stop.s);
     met = true;
     const auto& stopped = scene.surface.moves[static_cast<std::size_t>(stop.clearance.link)];
@@ -218,7 +228,7 @@ std::optional<HandPose> close_hand(const ClosingScene& scene, const HandPose& st
     return moved;
   };
   const Stop stop = advance({shifted, 1.0, kMaxAdvance}, all, Watch::surroundings, probe);
-  if (stop.touched && stop.clearance.link >= 0) pose = shifted(stop.s);
+  if (stop.touched) pose = shifted(stop.s);
   for (const Finger& finger : scene.surface.fingers) {
     if (close_finger(scene, finger, scene.direction, pose, probe)) continue;
     close_finger(scene, finger, approaching_direction(scene, finger, pose), pose, probe);
@@ -241,22 +251,21 @@ std::vector<Contact> find_contacts(const ClosingScene& scene, const HandPose& po
     const auto at = scene.target.distance->query(p_O);
     if (std::abs(at.distance) <= tolerance) add(link, at);
   }
+  const DistanceGrid& grid = *scene.target.grid;
   for (std::size_t link = 0; link < X_HL.size(); ++link) {
-    const Eigen::Isometry3d X_OL = pose.X_OH * X_HL[link];
-    const DistanceGrid& grid = *scene.target.grid;
-    const double band = tolerance + grid.spacing();
-    if (touches[link] || grid.value(X_OL * scene.surface.link_center[link]) - scene.surface.link_radius[link] > band) {
-      continue;
-    }
+    if (touches[link]) continue;
     robot::MeshDistance::Query nearest{};
-    nearest.distance = std::numeric_limits<double>::infinity();
-    for (const Eigen::Vector3d& p_L : scene.surface.dense[link]) {
-      const Eigen::Vector3d p_O = X_OL * p_L;
-      if (grid.value(p_O) > band) continue;
-      const auto at = scene.target.distance->query(p_O);
-      if (at.distance < nearest.distance) nearest = at;
-    }
-    if (std::abs(nearest.distance) <= tolerance) add(link, nearest);
+    nearest.distance = tolerance;
+    scene.surface.shapes[link]->points.descend(
+        [&grid](const Eigen::Vector3d& p_O) { return grid.bound(p_O) - grid.error(); }, pose.X_OH * X_HL[link],
+        nearest.distance,
+        [&](const Eigen::Vector3d&, const Eigen::Vector3d& p_O) {
+          if (grid.bound(p_O) - grid.error() >= nearest.distance) return nearest.distance;
+          const auto at = scene.target.distance->query(p_O);
+          if (at.distance < nearest.distance) nearest = at;
+          return nearest.distance;
+        });
+    if (std::abs(nearest.distance) < tolerance) add(link, nearest);
   }
   return contacts;
 }

@@ -11,15 +11,21 @@
 
 namespace opponens::grasp {
 
-DistanceGrid::DistanceGrid(const robot::MeshDistance& mesh, double spacing, double margin, std::size_t max_nodes,
-                           int threads)
-    : spacing_(spacing) {
-  require(spacing > 0.0 && margin > 0.0 && threads > 0, "DistanceGrid: spacing, margin and threads must be positive");
-  const Eigen::Matrix3Xd& vertices = mesh.mesh().vertices;
-  lower_ = vertices.rowwise().minCoeff().array() - margin;
-  const Eigen::Vector3d extent = (vertices.rowwise().maxCoeff().array() + margin).matrix() - lower_;
+DistanceGrid::DistanceGrid(const robot::MeshDistance& mesh, const Layout& layout, int threads)
+    : DistanceGrid(
+          [&mesh](const Eigen::Vector3d& p) { return mesh.signed_distance(p); },
+          Eigen::AlignedBox3d(mesh.mesh().vertices.rowwise().minCoeff(), mesh.mesh().vertices.rowwise().maxCoeff()),
+          layout, threads) {}
+
+DistanceGrid::DistanceGrid(const std::function<double(const Eigen::Vector3d&)>& distance,
+                           const Eigen::AlignedBox3d& box, const Layout& layout, int threads)
+    : spacing_(layout.spacing), margin_(layout.margin) {
+  require(layout.spacing > 0.0 && layout.margin > 0.0 && layout.max_nodes >= 8 && threads > 0,
+          "DistanceGrid: spacing, margin and threads must be positive, max_nodes at least 8");
+  lower_ = box.min().array() - layout.margin;
+  const Eigen::Vector3d extent = (box.max().array() + layout.margin).matrix() - lower_;
   const auto nodes = [&] { return (extent / spacing_).array().ceil().cast<double>() + 1.0; };
-  while (nodes().prod() > static_cast<double>(max_nodes)) spacing_ *= 1.1;
+  while (nodes().prod() > static_cast<double>(layout.max_nodes)) spacing_ *= 1.1;
   count_ = nodes().cast<int>().max(2);
   upper_ = lower_ + spacing_ * (count_.array() - 1).cast<double>().matrix();
   nodes_.resize(static_cast<std::size_t>(count_.cast<std::int64_t>().prod()));
@@ -28,7 +34,7 @@ DistanceGrid::DistanceGrid(const robot::MeshDistance& mesh, double spacing, doub
       std::size_t index = static_cast<std::size_t>(z) * count_.y() * count_.x();
       for (int y = 0; y < count_.y(); ++y) {
         for (int x = 0; x < count_.x(); ++x) {
-          nodes_[index++] = static_cast<float>(mesh.signed_distance(lower_ + spacing_ * Eigen::Vector3d(x, y, z)));
+          nodes_[index++] = static_cast<float>(distance(lower_ + spacing_ * Eigen::Vector3d(x, y, z)));
         }
       }
     }
@@ -50,8 +56,7 @@ DistanceGrid::Cell DistanceGrid::locate(const Eigen::Vector3d& p) const {
   return cell;
 }
 
-double DistanceGrid::value(const Eigen::Vector3d& p) const {
-  const Cell cell = locate(p);
+double DistanceGrid::interpolate(const Cell& cell) const {
   const Eigen::Vector3d& f = cell.fraction;
   const std::size_t row = count_.x();
   const std::size_t layer = row * count_.y();
@@ -59,8 +64,22 @@ double DistanceGrid::value(const Eigen::Vector3d& p) const {
   const double e00 = edge(0), e10 = edge(row), e01 = edge(layer), e11 = edge(layer + row);
   const double low = e00 + f.y() * (e10 - e00);
   const double high = e01 + f.y() * (e11 - e01);
+  return low + f.z() * (high - low);
+}
+
+double DistanceGrid::value(const Eigen::Vector3d& p) const {
+  const Cell cell = locate(p);
   const double outside = (p - cell.inside).squaredNorm();
-  return low + f.z() * (high - low) + (outside > 0.0 ? std::sqrt(outside) : 0.0);
+  return interpolate(cell) + (outside > 0.0 ? std::sqrt(outside) : 0.0);
+}
+
+double DistanceGrid::bound(const Eigen::Vector3d& p) const {
+  const Cell cell = locate(p);
+  const double inside = interpolate(cell);
+  const double squared = (p - cell.inside).squaredNorm();
+  if (squared == 0.0) return inside;
+  const double outside = std::sqrt(squared);
+  return std::max(inside - outside, margin_ + outside);
 }
 
 SignedDistance DistanceGrid::query(const Eigen::Vector3d& p) const {

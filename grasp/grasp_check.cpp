@@ -37,7 +37,7 @@ bool sweep_is_clear(const ClosingScene& scene, const HandCheckers& checkers, con
                     const HandPose& pregrasp, const GraspLimits& limits) {
   for (int i = 1; i < kSweepSteps; ++i) {
     const HandPose pose = between(grasp, pregrasp, static_cast<double>(i) / kSweepSteps);
-    if (!keeps(link_object_distances(scene, pose, Density::medium, kOtherClearance), limits)) return false;
+    if (!keeps(link_object_distances(scene, pose, kOtherClearance), limits)) return false;
     if (obstacle_distance(scene, pose, kObstacleClearance) < kObstacleClearance) return false;
     if (self_distance(scene, pose, kSelfClearance) < kSelfClearance) return false;
   }
@@ -49,52 +49,52 @@ bool sweep_is_clear(const ClosingScene& scene, const HandCheckers& checkers, con
 }
 
 bool clear_of_object(const ClosingScene& scene, const HandPose& pose, double clearance) {
-  for (const Density density : {Density::medium, Density::dense}) {
-    const auto distances = link_object_distances(scene, pose, density, clearance);
-    if (*std::min_element(distances.begin(), distances.end()) < clearance) return false;
-  }
-  return true;
+  const auto distances = link_object_distances(scene, pose, clearance);
+  return *std::min_element(distances.begin(), distances.end()) >= clearance;
+}
+
+/// Least distance of points to a link, exact below `bound`, else `bound`. X_LP: maps the points to the link's frame.
+double least_distance(const PointTree& points, const LinkShape& shape, const Eigen::Isometry3d& X_LP, double bound) {
+  const auto rough = [&shape](const Eigen::Vector3d& p_L) { return shape.rough(p_L) - shape.error(); };
+  return points.descend(rough, X_LP, bound, [&](const Eigen::Vector3d&, const Eigen::Vector3d& p_L) {
+    if (rough(p_L) < bound) bound = std::min(bound, shape.body.query(p_L, std::max(bound, 0.0)).value);
+    return bound;
+  });
 }
 
 }  // namespace
 
-std::vector<double> link_object_distances(const ClosingScene& scene, const HandPose& pose, Density density,
-                                          double horizon) {
+std::vector<double> link_object_distances(const ClosingScene& scene, const HandPose& pose, double horizon) {
   const auto X_HL = scene.hand.link_poses(pose.q);
-  const HandSurface& surface = scene.surface;
   const DistanceGrid& grid = *scene.target.grid;
-  std::vector<double> distances(X_HL.size(), std::numeric_limits<double>::infinity());
+  const auto bound = [&grid](const Eigen::Vector3d& p_O) { return grid.bound(p_O) - grid.error(); };
+  std::vector<double> distances(X_HL.size(), horizon);
   for (std::size_t link = 0; link < X_HL.size(); ++link) {
-    const Eigen::Isometry3d X_OL = pose.X_OH * X_HL[link];
-    const double bound = grid.value(X_OL * surface.link_center[link]) - surface.link_radius[link];
-    if (bound - grid.spacing() > horizon) continue;
     double& least = distances[link];
-    for (const Eigen::Vector3d& p_L : (density == Density::dense ? surface.dense : surface.medium)[link]) {
-      const Eigen::Vector3d p_O = X_OL * p_L;
-      const double rough = grid.value(p_O) - grid.spacing();
-      // Only a point that could still be the nearest is worth an exact answer.
-      if (rough < horizon && rough < least) least = std::min(least, scene.target.distance->signed_distance(p_O));
-    }
+    scene.surface.shapes[link]->points.descend(bound, pose.X_OH * X_HL[link], horizon,
+                                               [&](const Eigen::Vector3d&, const Eigen::Vector3d& p_O) {
+                                                 // Only a point that could still be the nearest is worth an exact
+                                                 // answer.
+                                                 if (bound(p_O) < least) {
+                                                   least = std::min(least, scene.target.distance->signed_distance(p_O));
+                                                 }
+                                                 return least;
+                                               });
   }
   return distances;
 }
 
 std::vector<double> object_link_distances(const ClosingScene& scene, const HandPose& pose, double horizon) {
   const auto X_HL = scene.hand.link_poses(pose.q);
-  const HandSurface& surface = scene.surface;
   std::vector<double> distances(X_HL.size(), horizon);
   for (std::size_t link = 0; link < X_HL.size(); ++link) {
-    if (surface.links[link].empty()) continue;
+    const LinkShape& shape = *scene.surface.shapes[link];
+    if (shape.body.empty()) continue;
     const Eigen::Isometry3d X_OL = pose.X_OH * X_HL[link];
-    const double reach = surface.link_radius[link] + horizon;
+    const double reach = scene.surface.link_radius[link] + horizon;
     const DistanceGrid& grid = *scene.target.grid;
-    if (grid.value(X_OL * surface.link_center[link]) > reach + grid.spacing()) continue;
-    const Eigen::Isometry3d X_LO = X_OL.inverse();
-    for (const Eigen::Vector3d& p_O : scene.target.surface) {
-      const Eigen::Vector3d p_L = X_LO * p_O;
-      if ((p_L - surface.link_center[link]).squaredNorm() > reach * reach) continue;
-      distances[link] = std::min(distances[link], surface.links[link].query(p_L, horizon).value);
-    }
+    if (grid.bound(X_OL * scene.surface.link_center[link]) - grid.error() > reach) continue;
+    distances[link] = least_distance(scene.target.surface, shape, X_OL.inverse(), horizon);
   }
   return distances;
 }
@@ -106,27 +106,25 @@ double self_distance(const ClosingScene& scene, const HandPose& pose, double hor
   for (std::size_t a = 0; a < X_HL.size(); ++a) {
     for (const int stranger : surface.strangers[a]) {
       const auto b = static_cast<std::size_t>(stranger);
-      const Eigen::Isometry3d X_BA = X_HL[b].inverse() * X_HL[a];
-      const double apart = (X_BA * surface.link_center[a] - surface.link_center[b]).norm();
+      const double apart = (X_HL[a] * surface.link_center[a] - X_HL[b] * surface.link_center[b]).norm();
       if (apart > surface.link_radius[a] + surface.link_radius[b] + horizon) continue;
-      for (const Eigen::Vector3d& p_A : surface.medium[a]) {
-        least = std::min(least, surface.links[b].query(X_BA * p_A, horizon).value);
-      }
+      least = least_distance(surface.shapes[a]->points, *surface.shapes[b], X_HL[b].inverse() * X_HL[a], least);
     }
   }
   return least;
 }
 
 double obstacle_distance(const ClosingScene& scene, const HandPose& pose, double horizon) {
+  if (scene.target.obstacles.empty()) return horizon;
   const auto X_HL = scene.hand.link_poses(pose.q);
   double least = horizon;
   for (std::size_t link = 0; link < X_HL.size(); ++link) {
-    const Eigen::Isometry3d X_OL = pose.X_OH * X_HL[link];
-    const double reach = scene.surface.link_radius[link] + horizon;
-    if (scene.target.obstacle_distance(X_OL * scene.surface.link_center[link], reach).value > reach) continue;
-    for (const Eigen::Vector3d& p_L : scene.surface.medium[link]) {
-      least = std::min(least, scene.target.obstacle_distance(X_OL * p_L, horizon).value);
-    }
+    const auto distance = [&](const Eigen::Vector3d& p_O) {
+      return scene.target.obstacle_distance(p_O, scene.surface.link_radius[link] + horizon).value;
+    };
+    least = scene.surface.shapes[link]->points.descend(
+        distance, pose.X_OH * X_HL[link], least,
+        [&](const Eigen::Vector3d&, const Eigen::Vector3d& p_O) { return least = std::min(least, distance(p_O)); });
   }
   return least;
 }
@@ -142,8 +140,7 @@ std::string posture_fault(const ClosingScene& scene, const HandCheckers& checker
   if (obstacle_distance(scene, pose, kObstacleClearance) < kObstacleClearance) return "too near to an obstacle";
   if (!checkers.touching.free(scene.target.X_WO * pose.X_OH, pose.q)) return "hand in collision";
   if (self_distance(scene, pose, kSelfClearance) < kSelfClearance) return "fingers touch each other";
-  if (!keeps(link_object_distances(scene, pose, Density::dense, kOtherClearance), limits))
-    return "penetrates the object";
+  if (!keeps(link_object_distances(scene, pose, kOtherClearance), limits)) return "penetrates the object";
   if (!keeps(object_link_distances(scene, pose, kOtherClearance), limits)) return "penetrates the object";
   return {};
 }

@@ -11,13 +11,8 @@
 
 namespace opponens::grasp {
 
-/// Which of the hand's sampled points a question looks at.
-enum class Density { medium, dense };
-
-/// Per link, least signed distance of its sampled points to the object, m: exact (MeshDistance) where it is below
-/// horizon, at least horizon elsewhere.
-std::vector<double> link_object_distances(const ClosingScene& scene, const HandPose& pose, Density density,
-                                          double horizon);
+/// Per link, least signed distance of its surface points to the object, m: exact (MeshDistance), at most horizon.
+std::vector<double> link_object_distances(const ClosingScene& scene, const HandPose& pose, double horizon);
 
 /// The same seen from the object: per link, the least signed distance of the object's surface points to it, m; at most
 /// horizon. Sees edges and corners of the object that slip between the hand's own points.

@@ -150,14 +150,14 @@ double GraspObjective::add_penetration(const Eigen::Isometry3d& X_OH) {
     const double slope = -2.0 * kPenetrationWeight * depth / (kPenetrationUnit * kPenetrationUnit);
     add(link, p_H, X_OH.linear().transpose() * (slope * d.gradient));
   };
-  for (std::size_t link = 0; link < surface_.sparse.size(); ++link) {
+  for (std::size_t link = 0; link < surface_.shapes.size(); ++link) {
     const Eigen::Vector3d center = X_OH * X_HL_[link] * surface_.link_center[link];
     const double radius = surface_.link_radius[link];
     const bool near_object = target_.grid->value(center) < radius + target_.grid->spacing();
     const double reach = radius + kObstacleGap;
     const bool near_obstacle = target_.obstacle_distance(center, reach).value < reach;
     if (!near_object && !near_obstacle) continue;
-    for (const Eigen::Vector3d& p_L : surface_.sparse[link]) {
+    for (const Eigen::Vector3d& p_L : surface_.shapes[link]->sparse) {
       const Eigen::Vector3d p_H = X_HL_[link] * p_L;
       const Eigen::Vector3d p_O = X_OH * p_H;
       if (near_object) penalize(link, p_H, target_.grid->query(p_O), 0.0);

@@ -37,7 +37,8 @@ GraspTarget make_target(const robot::Scene& scene, const std::string& object, in
   target.X_WO = body.X_WB;
   target.mesh = std::make_shared<const robot::TriangleMesh>(robot::merge(body.geometry));
   target.distance = std::make_shared<const robot::MeshDistance>(target.mesh);
-  target.grid = std::make_shared<const DistanceGrid>(*target.distance, kGridSpacing, kGridMargin, kGridNodes, threads);
+  target.grid = std::make_shared<const DistanceGrid>(
+      *target.distance, DistanceGrid::Layout{kGridSpacing, kGridMargin, kGridNodes}, threads);
   const Eigen::Matrix3Xd& vertices = target.mesh->vertices;
   const auto count = target.mesh->triangles.cols();
   target.cumulative_area.resize(count);
@@ -49,7 +50,7 @@ GraspTarget make_target(const robot::Scene& scene, const std::string& object, in
   }
   require(area > 0.0, "grasp search: object " + object + " has no surface");
   const double spacing = std::max(kSurfaceSpacing, std::sqrt(area / kSurfacePoints));
-  target.surface = robot::surface_samples({target.mesh, Eigen::Isometry3d::Identity()}, spacing);
+  target.surface = PointTree(robot::surface_samples({target.mesh, Eigen::Isometry3d::Identity()}, spacing));
   target.center_of_mass = robot::is_closed(*target.mesh) ? robot::mass_properties(*target.mesh).center_of_mass
                                                          : Eigen::Vector3d(vertices.rowwise().mean());
   target.rho = (vertices.colwise() - target.center_of_mass).colwise().norm().maxCoeff();

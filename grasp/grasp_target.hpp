@@ -12,6 +12,7 @@
 #include "core/rng.hpp"
 #include "grasp/body_distance.hpp"
 #include "grasp/distance_grid.hpp"
+#include "grasp/point_tree.hpp"
 #include "robot/mesh_distance.hpp"
 #include "robot/scene.hpp"
 
@@ -30,11 +31,11 @@ struct GraspTarget {
   std::shared_ptr<const robot::TriangleMesh> mesh;  ///< all geometry of the body, one mesh
   std::shared_ptr<const robot::MeshDistance> distance;
   std::shared_ptr<const DistanceGrid> grid;
-  std::vector<Eigen::Vector3d> surface;  ///< points 2.5 mm apart (or coarser: at most about 40,000)
-  Eigen::VectorXd cumulative_area;       ///< [F] of the triangles, for uniform sampling
-  Eigen::Vector3d center_of_mass;        ///< uniform density; mean of the vertices for an open mesh
-  double rho;                            ///< m, largest distance of a vertex from it
-  std::vector<Obstacle> obstacles;       ///< every other body of the scene
+  PointTree surface;                ///< points 2.5 mm apart (or coarser: at most about 40,000)
+  Eigen::VectorXd cumulative_area;  ///< [F] of the triangles, for uniform sampling
+  Eigen::Vector3d center_of_mass;   ///< uniform density; mean of the vertices for an open mesh
+  double rho;                       ///< m, largest distance of a vertex from it
+  std::vector<Obstacle> obstacles;  ///< every other body of the scene
 
   /// Distance of p_O to the nearest obstacle, and its gradient; a lower bound beyond horizon.
   SignedDistance obstacle_distance(const Eigen::Vector3d& p_O, double horizon) const;

@@ -28,7 +28,7 @@ Eigen::Vector3d tilt(const Eigen::Vector3d& d, Rng& rng) {
 bool palm_is_clear(const SeedSpace& space, const Eigen::Isometry3d& X_OH, const std::vector<Eigen::Isometry3d>& X_HL) {
   for (const int link : space.surface.palm_links) {
     const auto i = static_cast<std::size_t>(link);
-    for (const Eigen::Vector3d& p_L : space.surface.sparse[i]) {
+    for (const Eigen::Vector3d& p_L : space.surface.shapes[i]->sparse) {
       const Eigen::Vector3d p_O = X_OH * X_HL[i] * p_L;
       if (space.target.grid->value(p_O) < -0.005) return false;
       if (space.target.obstacle_distance(p_O, 0.005).value < 0.002) return false;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <variant>
 
 #include <Eigen/Geometry>
 
@@ -13,25 +14,50 @@
 namespace opponens::grasp {
 namespace {
 
-constexpr double kDense = 0.0025;  // m
+constexpr double kSparse = 0.02;        // m
+constexpr double kDense = 0.0025;       // m
+constexpr double kGridSpacing = 0.003;  // m, of link meshes
+constexpr double kGridMargin = 0.02;    // m, fingers pass each other nearer than this only rarely
+constexpr std::size_t kGridNodes = 100000;
+constexpr double kHorizon = 1.0;  // m, no hand is larger
 
-std::vector<Eigen::Vector3d> samples(const robot::Link& link, double spacing) {
+std::vector<Eigen::Vector3d> samples(const std::vector<robot::Geometry>& geometry, double spacing) {
   std::vector<Eigen::Vector3d> points;
-  for (const robot::Geometry& geometry : link.collision) {
-    for (const Eigen::Vector3d& p : robot::surface_samples(geometry, spacing)) points.push_back(p);
+  for (const robot::Geometry& g : geometry) {
+    for (const Eigen::Vector3d& p : robot::surface_samples(g, spacing)) points.push_back(p);
   }
   return points;
 }
 
-void add_bounding_sphere(HandSurface& surface) {
-  const std::vector<Eigen::Vector3d>& points = surface.dense.back();
-  Eigen::AlignedBox3d box;
-  for (const Eigen::Vector3d& p : points) box.extend(p);
-  const Eigen::Vector3d center = points.empty() ? Eigen::Vector3d::Zero().eval() : box.center().eval();
-  double radius = 0.0;
-  for (const Eigen::Vector3d& p : points) radius = std::max(radius, (p - center).norm());
-  surface.link_center.push_back(center);
-  surface.link_radius.push_back(radius + kDense);
+bool is_mesh(const robot::Geometry& g) {
+  return std::holds_alternative<std::shared_ptr<const robot::TriangleMesh>>(g.shape);
+}
+
+/// Whether both are the same meshes at the same places; links of primitives are quick to make again.
+bool same_meshes(const std::vector<robot::Geometry>& a, const std::vector<robot::Geometry>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const robot::Geometry& x, const robot::Geometry& y) {
+    const auto* mesh_x = std::get_if<std::shared_ptr<const robot::TriangleMesh>>(&x.shape);
+    const auto* mesh_y = std::get_if<std::shared_ptr<const robot::TriangleMesh>>(&y.shape);
+    return mesh_x != nullptr && mesh_y != nullptr && *mesh_x == *mesh_y && x.X_BG.matrix() == y.X_BG.matrix();
+  });
+}
+
+std::vector<std::shared_ptr<const LinkShape>> link_shapes(const std::vector<robot::Link>& links) {
+  std::vector<std::shared_ptr<const LinkShape>> shapes;
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    std::size_t twin = 0;
+    while (twin < i && !(same_meshes(links[twin].collision, links[i].collision) && !links[i].collision.empty())) ++twin;
+    shapes.push_back(twin < i ? shapes[twin] : std::make_shared<const LinkShape>(links[i].collision));
+  }
+  return shapes;
+}
+
+void add_bounding_spheres(HandSurface& surface) {
+  for (const auto& shape : surface.shapes) {
+    const bool empty = shape->points.empty();
+    surface.link_center.push_back(empty ? Eigen::Vector3d::Zero().eval() : shape->points.center());
+    surface.link_radius.push_back((empty ? 0.0 : shape->points.radius()) + kDense);
+  }
 }
 
 std::vector<std::vector<int>> find_strangers(const robot::RobotModel& hand) {
@@ -124,18 +150,26 @@ void find_approach(const robot::RobotModel& hand, const Eigen::VectorXd& q, Hand
 
 }  // namespace
 
+LinkShape::LinkShape(const std::vector<robot::Geometry>& geometry)
+    : sparse(samples(geometry, kSparse)), points(samples(geometry, kDense)), body(geometry) {
+  if (std::none_of(geometry.begin(), geometry.end(), is_mesh) || points.empty()) return;
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& p : points.points()) box.extend(p);
+  grid =
+      std::make_unique<const DistanceGrid>([this](const Eigen::Vector3d& p) { return body.query(p, kHorizon).value; },
+                                           box, DistanceGrid::Layout{kGridSpacing, kGridMargin, kGridNodes}, 1);
+}
+
+double LinkShape::rough(const Eigen::Vector3d& p_L) const {
+  return grid ? grid->bound(p_L) : body.query(p_L, kHorizon).value;
+}
+
 HandSurface hand_surface(const robot::RobotModel& hand, const Eigen::VectorXd& q) {
   require(hand.palm() == 0, "grasp search: the hand model must be rooted at its palm link (load_hand)");
   require(!hand.description().contact_points.empty(), "grasp search: the hand has no contact_points");
   HandSurface surface;
-  for (const robot::Link& link : hand.links()) {
-    surface.sparse.push_back(samples(link, 0.02));
-    surface.coarse.push_back(samples(link, 0.009));
-    surface.medium.push_back(samples(link, 0.005));
-    surface.dense.push_back(samples(link, kDense));
-    surface.links.emplace_back(link.collision);
-    add_bounding_sphere(surface);
-  }
+  surface.shapes = link_shapes(hand.links());
+  add_bounding_spheres(surface);
   surface.strangers = find_strangers(hand);
   surface.drives = find_drives(hand);
   surface.moves = moved_by(hand, surface.drives);
