@@ -50,6 +50,29 @@ struct GraspQuality {
   bool force_closure() const { return state == ClosureState::force_closure; }
 };
 
+/// Errors that a grasp may meet: independent, normal, of zero mean.
+struct GraspNoise {
+  double position = 0.005;  ///< m, standard deviation of each coordinate of the object's position
+  double angle = 0.05;      ///< rad, standard deviation of each coordinate of the object's rotation vector
+  double friction = 0.05;   ///< standard deviation of the friction coefficient, one error for all contacts
+  int samples = 100;
+};
+
+/// Quality under pose and friction errors, by Monte Carlo (grasp/robust_quality.hpp says how a disturbed grasp closes).
+struct RobustQuality {
+  GraspNoise noise;
+  double force_closure = 0.0;      ///< share of the samples that are force closure ...
+  double force_closure_low = 0.0;  ///< ... and the ends of its 95 % Clopper-Pearson interval
+  double force_closure_high = 0.0;
+  double epsilon_mean = 0.0;  ///< a sample that is not force closure counts as 0
+  double epsilon_low = 0.0;   ///< 5 % quantile of the same
+};
+
+enum class GraspOrigin {
+  searched,  ///< found by grasp/grasp_search.hpp
+  imported,  ///< given; held to the same checks
+};
+
 /// One way for the arm to bring the hand there: inverse kinematics of both poses on the same branch.
 struct ArmSolution {
   Eigen::VectorXd q_pregrasp;  ///< [a] rad
@@ -67,7 +90,9 @@ struct Grasp {
   Eigen::Isometry3d X_OH_pregrasp = Eigen::Isometry3d::Identity();  ///< hand retreated
   std::vector<Contact> contacts;
   GraspQuality quality;
-  bool synergy_grasp = true;               ///< slack norm within the stated bound; otherwise "free"
+  bool synergy_grasp = true;            ///< slack norm within the stated bound; otherwise "free"
+  std::optional<RobustQuality> robust;  ///< beside the nominal quality; nullopt: not asked for
+  GraspOrigin origin = GraspOrigin::searched;
   std::vector<ArmSolution> arm_solutions;  ///< filled by Algorithm 1; empty: not reachable or not yet asked
 };
 

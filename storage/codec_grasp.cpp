@@ -14,6 +14,7 @@ constexpr std::array<std::string_view, 3> kModels{"frictionless", "point_with_fr
 constexpr std::array<std::string_view, 2> kUnits{"normal", "force"};
 constexpr std::array<std::string_view, 2> kNorms{"l1", "linf"};
 constexpr std::array<std::string_view, 3> kStates{"force_closure", "not_force_closure", "rank_deficient"};
+constexpr std::array<std::string_view, 2> kOrigins{"searched", "imported"};
 
 void encode_quality(Record& record, const GraspQuality& quality) {
   auto& fields = record.fields;
@@ -52,6 +53,33 @@ GraspQuality decode_quality(const FieldReader& read) {
   read.expect(read.vector("convention.origin").size() == 3, "convention.origin", "3 values");
   convention.origin = read.vector("convention.origin");
   return quality;
+}
+
+void encode_robust(Record& record, const RobustQuality& robust) {
+  auto& fields = record.fields;
+  fields["robust.noise_position"] = robust.noise.position;
+  fields["robust.noise_angle"] = robust.noise.angle;
+  fields["robust.noise_friction"] = robust.noise.friction;
+  fields["robust.samples"] = std::int64_t{robust.noise.samples};
+  fields["robust.force_closure"] = robust.force_closure;
+  fields["robust.force_closure_low"] = robust.force_closure_low;
+  fields["robust.force_closure_high"] = robust.force_closure_high;
+  fields["robust.epsilon_mean"] = robust.epsilon_mean;
+  fields["robust.epsilon_low"] = robust.epsilon_low;
+}
+
+RobustQuality decode_robust(const FieldReader& read) {
+  RobustQuality robust;
+  robust.noise.position = read.number("robust.noise_position");
+  robust.noise.angle = read.number("robust.noise_angle");
+  robust.noise.friction = read.number("robust.noise_friction");
+  robust.noise.samples = read.small_integer("robust.samples");
+  robust.force_closure = read.number("robust.force_closure");
+  robust.force_closure_low = read.number("robust.force_closure_low");
+  robust.force_closure_high = read.number("robust.force_closure_high");
+  robust.epsilon_mean = read.number("robust.epsilon_mean");
+  robust.epsilon_low = read.number("robust.epsilon_low");
+  return robust;
 }
 
 void encode_contacts(Record& record, const std::vector<Contact>& contacts) {
@@ -137,6 +165,8 @@ Record encode(const Grasp& grasp, const Provenance& provenance) {
   fields["synergy_grasp"] = std::int64_t{grasp.synergy_grasp ? 1 : 0};
   encode_contacts(record, grasp.contacts);
   encode_quality(record, grasp.quality);
+  if (grasp.robust) encode_robust(record, *grasp.robust);
+  fields["origin"] = enum_text(kOrigins, grasp.origin);
   encode_arm_solutions(record, grasp.arm_solutions);
   return record;
 }
@@ -154,6 +184,9 @@ Grasp decode_grasp(const Record& record) {
   grasp.synergy_grasp = read.integer("synergy_grasp") != 0;
   grasp.contacts = decode_contacts(read);
   grasp.quality = decode_quality(read);
+  if (record.fields.contains("robust.samples")) grasp.robust = decode_robust(read);
+  // Stores written before grasps could be imported do not say it.
+  if (record.fields.contains("origin")) grasp.origin = read.enumerator<GraspOrigin>("origin", kOrigins);
   grasp.arm_solutions = decode_arm_solutions(read);
   return grasp;
 }

@@ -54,6 +54,8 @@ Grasp grasp() {
   value.quality.convention = {ContactModel::soft_finger, 0.7,  12,    ForceUnit::force,
                               WrenchNorm::linf,          0.08, 0.003, Eigen::Vector3d(0, 0, 1)};
   value.synergy_grasp = false;
+  value.robust = RobustQuality{{0.004, 0.03, 0.1, 250}, 0.9, 0.86, 0.93, 0.05, 0.01};
+  value.origin = GraspOrigin::imported;
   value.arm_solutions = {{Eigen::VectorXd::Random(6), Eigen::VectorXd::Random(6)},
                          {Eigen::VectorXd::Random(6), Eigen::VectorXd::Random(6)}};
   return value;
@@ -137,9 +139,28 @@ TEST(Codec, Grasp) {
   EXPECT_EQ(back.quality.convention.mu, 0.7);
   EXPECT_EQ(back.quality.convention.origin, Eigen::Vector3d(0, 0, 1));
   EXPECT_FALSE(back.synergy_grasp);
+  ASSERT_TRUE(back.robust);
+  EXPECT_EQ(back.robust->noise.position, 0.004);
+  EXPECT_EQ(back.robust->noise.angle, 0.03);
+  EXPECT_EQ(back.robust->noise.friction, 0.1);
+  EXPECT_EQ(back.robust->noise.samples, 250);
+  EXPECT_EQ(back.robust->force_closure, 0.9);
+  EXPECT_EQ(back.robust->force_closure_low, 0.86);
+  EXPECT_EQ(back.robust->force_closure_high, 0.93);
+  EXPECT_EQ(back.robust->epsilon_mean, 0.05);
+  EXPECT_EQ(back.robust->epsilon_low, 0.01);
+  EXPECT_EQ(back.origin, GraspOrigin::imported);
   ASSERT_EQ(back.arm_solutions.size(), 2U);
   EXPECT_EQ(back.arm_solutions[1].q_grasp, value.arm_solutions[1].q_grasp);
   EXPECT_EQ(back.arm_solutions[1].q_pregrasp, value.arm_solutions[1].q_pregrasp);
+}
+
+TEST(Codec, GraspsStoredBeforeTheyHadAnOriginWereSearched) {
+  Record record = encode(Grasp{}, kProvenance);
+  EXPECT_EQ(record.fields.erase("origin"), 1U);
+  const Grasp grasp = decode_grasp(record);
+  EXPECT_EQ(grasp.origin, GraspOrigin::searched);
+  EXPECT_FALSE(grasp.robust);
 }
 
 TEST(Codec, EmptyGraspAndUnsolvedPath) {
