@@ -110,12 +110,19 @@ struct GraspItem {
   std::optional<bool> verified;  ///< of `verify`, nullopt: not yet checked
 };
 
+/// What all searches of one group came to.
+struct GraspSearch {
+  std::string group;
+  std::int64_t trials = 0;
+  std::map<std::string, std::int64_t> rejected;  ///< reason -> trials; "reason: bodies" names what was in the way
+};
+
 struct GraspPart {
-  std::string object;                            ///< body of the scene
-  std::vector<GraspItem> items;                  ///< best first
-  std::int64_t trials = 0;                       ///< of the search
-  std::map<std::string, std::int64_t> rejected;  ///< reason -> count
-  int max_pictures = 12;                         ///< items beyond are only in the table
+  std::string object;                 ///< body of the scene
+  std::string grouped_by;             ///< label that formed the groups: "family", ...; empty: unknown
+  std::vector<GraspItem> items;       ///< best first
+  std::vector<GraspSearch> searches;  ///< one per group, those that gave no grasp too, in the order of the page
+  int max_pictures = 5;               ///< of each group; further ones are only in the table
 };
 
 struct HumanLikeness {

@@ -195,8 +195,12 @@ GraspPart grasps(const robot::RobotModel& hand, Rng& rng) {
     part.items.push_back(
         {fake_id(rng), grasp(hand, std::to_string(1 + i % 4), -0.8 + 0.45 * i, 0.75 + 0.05 * i, rng), true});
   }
-  part.trials = 1240;
-  part.rejected = {{"arm collision", 212}, {"hand collision", 401}, {"no IK", 388}, {"not force closure", 234}};
+  part.grouped_by = "family";
+  part.searches = {
+      {"1", 320, {{"arm collision", 52}, {"hand collision", 111}, {"no IK", 98}, {"not force closure", 57}}},
+      {"2", 320, {{"arm collision: link_3.0 and shelf", 60}, {"hand collision", 120}, {"no IK", 139}}},
+      {"3", 300, {{"arm collision", 50}, {"hand collision", 90}, {"no IK", 81}, {"not force closure", 78}}},
+      {"4", 300, {{"arm collision", 50}, {"hand collision", 80}, {"no IK", 70}, {"not force closure", 99}}}};
   return part;
 }
 
