@@ -73,9 +73,8 @@ std::optional<robot::MeshDistance::Query> meet(const robot::MeshDistance& object
   return std::nullopt;
 }
 
-/// Of the disturbed grasp; 0 where it is not force closure.
-double disturbed_epsilon(const robot::MeshDistance& object, const Grasp& grasp,
-                         const std::vector<Eigen::Vector3d>& directions, const Disturbance& disturbance) {
+std::vector<Contact> find_again(const robot::MeshDistance& object, const Grasp& grasp,
+                                const std::vector<Eigen::Vector3d>& directions, const Disturbance& disturbance) {
   const Eigen::Isometry3d X_DO = disturbance.X_OD.inverse();
   std::vector<Contact> contacts;
   for (std::size_t i = 0; i < grasp.contacts.size(); ++i) {
@@ -85,8 +84,7 @@ double disturbed_epsilon(const robot::MeshDistance& object, const Grasp& grasp,
     contacts.push_back(
         {contact.link, at->point, -at->gradient.normalized(), std::max(0.0, contact.mu + disturbance.friction)});
   }
-  const GraspQuality quality = evaluate(contacts, grasp.quality.convention);
-  return quality.force_closure() ? quality.epsilon.value_or(0.0) : 0.0;
+  return contacts;
 }
 
 }  // namespace
@@ -104,6 +102,11 @@ void validate(const GraspNoise& noise) {
           [&] { return "GraspNoise: samples = " + std::to_string(noise.samples) + " must be positive"; });
 }
 
+std::vector<Contact> disturbed_contacts(const robot::RobotModel& hand, const robot::MeshDistance& object,
+                                        const Grasp& grasp, const Eigen::Isometry3d& X_OD, double friction) {
+  return find_again(object, grasp, following_directions(hand, grasp), {X_OD, friction});
+}
+
 RobustQuality robust_quality(const robot::RobotModel& hand, const robot::MeshDistance& object, const Grasp& grasp,
                              const GraspNoise& noise, Rng& rng) {
   validate(noise);
@@ -115,7 +118,9 @@ RobustQuality robust_quality(const robot::RobotModel& hand, const robot::MeshDis
   double sum = 0.0;
   for (int i = 0; i < noise.samples; ++i) {
     const Disturbance disturbance = draw(noise, grasp.quality.convention.origin, rng);
-    epsilon.push_back(disturbed_epsilon(object, grasp, directions, disturbance));
+    const std::vector<Contact> contacts = find_again(object, grasp, directions, disturbance);
+    const GraspQuality quality = evaluate(contacts, grasp.quality.convention);
+    epsilon.push_back(quality.force_closure() ? quality.epsilon.value_or(0.0) : 0.0);
     closed += epsilon.back() > 0.0 ? 1 : 0;
     sum += epsilon.back();
   }

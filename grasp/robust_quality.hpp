@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <vector>
+
+#include <Eigen/Geometry>
+
 #include "core/grasp.hpp"
 #include "core/rng.hpp"
 #include "robot/mesh_distance.hpp"
@@ -13,6 +17,11 @@ void validate(const GraspNoise& noise);  ///< throws std::invalid_argument namin
 
 /// m, that a contact follows a displaced object; one that would have to go farther is lost.
 inline constexpr double kFollow = 0.02;
+
+/// The contacts of a grasp found again with the object displaced to X_OD and friction changed by `friction` (never
+/// below 0), in D. See robust_quality for the rule; those that are lost are left out.
+std::vector<Contact> disturbed_contacts(const robot::RobotModel& hand, const robot::MeshDistance& object,
+                                        const Grasp& grasp, const Eigen::Isometry3d& X_OD, double friction);
 
 /// Quality of a grasp when the object is not where it was thought to be, and not as rough: noise.samples times the
 /// object is shifted and turned about the convention's origin (its centre of mass), the friction of all contacts
