@@ -68,7 +68,8 @@ Verdict grasp_verdict(const storage::Store& store, const storage::Record& record
   const SynergySet synergies = storage::decode_synergy_set(store.read(record.provenance.inputs.at(0)));
   const SynergyGroup& group = group_named(synergies, grasp.group);
   const NamedWorld& world = shared.world_of(parameters_of(record).at("world")).named;
-  const opponens::verify::GraspCheckSettings settings;
+  opponens::verify::GraspCheckSettings settings;
+  settings.slack_bound = parameters_of(record).value("slack_bound", settings.slack_bound);
   Verdict verdict =
       opponens::verify::check_grasp(grasp, {&group.box, &world.hand, &world.scene.body(world.object)}, settings);
   opponens::verify::check_arm_solutions(grasp, world.robot, world.X_RO(), settings.tolerance, verdict);

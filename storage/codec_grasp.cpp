@@ -14,7 +14,7 @@ constexpr std::array<std::string_view, 3> kModels{"frictionless", "point_with_fr
 constexpr std::array<std::string_view, 2> kUnits{"normal", "force"};
 constexpr std::array<std::string_view, 2> kNorms{"l1", "linf"};
 constexpr std::array<std::string_view, 3> kStates{"force_closure", "not_force_closure", "rank_deficient"};
-constexpr std::array<std::string_view, 2> kOrigins{"searched", "imported"};
+constexpr std::array<std::string_view, 2> kGraspOrigins{"searched", "imported"};
 
 void encode_quality(Record& record, const GraspQuality& quality) {
   auto& fields = record.fields;
@@ -166,7 +166,7 @@ Record encode(const Grasp& grasp, const Provenance& provenance) {
   encode_contacts(record, grasp.contacts);
   encode_quality(record, grasp.quality);
   if (grasp.robust) encode_robust(record, *grasp.robust);
-  fields["origin"] = enum_text(kOrigins, grasp.origin);
+  fields["origin"] = enum_text(kGraspOrigins, grasp.origin);
   encode_arm_solutions(record, grasp.arm_solutions);
   return record;
 }
@@ -186,7 +186,7 @@ Grasp decode_grasp(const Record& record) {
   grasp.quality = decode_quality(read);
   if (record.fields.contains("robust.samples")) grasp.robust = decode_robust(read);
   // Stores written before grasps could be imported do not say it.
-  if (record.fields.contains("origin")) grasp.origin = read.enumerator<GraspOrigin>("origin", kOrigins);
+  if (record.fields.contains("origin")) grasp.origin = read.enumerator<GraspOrigin>("origin", kGraspOrigins);
   grasp.arm_solutions = decode_arm_solutions(read);
   return grasp;
 }
