@@ -155,7 +155,7 @@ std::optional<std::string> out_of_reach(const NamedWorld& world) {
       world.robot.link_poses(Eigen::VectorXd::Zero(world.robot.dof()))[static_cast<std::size_t>(*first)].translation();
   const Eigen::Isometry3d X_RO = world.X_RO();
   const robot::TriangleMesh mesh = robot::merge(world.scene.body(world.object).geometry);
-  const Eigen::Matrix3Xd vertices = (X_RO * mesh.vertices.colwise().homogeneous()).colwise().hnormalized();
+  const Eigen::Matrix3Xd vertices = (X_RO.linear() * mesh.vertices).colwise() + X_RO.translation();
   const Eigen::AlignedBox3d box(vertices.rowwise().minCoeff(), vertices.rowwise().maxCoeff());
   const double apart = box.exteriorDistance(p_RF);
   const double length = longest_chain(world.robot, world.robot.palm(), *first) + hand_length(world.hand);
