@@ -57,8 +57,8 @@ std::string robust_words(const RobustQuality& robust) {
   return concat({"force closure in ", percent(robust.force_closure), " of ", std::to_string(robust.noise.samples),
                  " disturbed grasps [", percent(robust.force_closure_low), ", ", percent(robust.force_closure_high),
                  "], \u03B5 ", significant(robust.epsilon_mean), " on average, ", significant(robust.epsilon_low),
-                 " at the 5 % quantile (object moved by ", fixed(1e3 * robust.noise.position, 1), " mm and ",
-                 significant(robust.noise.angle), " rad, \u03BC by ", significant(robust.noise.friction),
+                 " at the 5 % quantile (object moved by ", compact(1e3 * robust.noise.position, 1), " mm and ",
+                 compact(robust.noise.angle, 4), " rad, \u03BC by ", compact(robust.noise.friction, 4),
                  ", standard deviations)"});
 }
 
@@ -125,9 +125,10 @@ Markup contact_table(const GraspStage* stage, const Grasp& grasp, const std::vec
   return table.str();
 }
 
+/// Tenths of a millimetre: a centre of mass that rounding left 1e-19 m off an axis is on it.
 std::string position_words(const Eigen::Vector3d& p) {
   if (p.isZero(0.0)) return "the object's origin";
-  return concat({"(", significant(p.x()), ", ", significant(p.y()), ", ", significant(p.z()), ") m in the object"});
+  return concat({"(", compact(p.x(), 4), ", ", compact(p.y(), 4), ", ", compact(p.z(), 4), ") m in the object"});
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ namespace opponens::report {
 namespace {
 
 constexpr int kHandTriangles = 2400;
-constexpr int kObjectTriangles = 800;
+constexpr int kObjectTriangles = 1200;
 constexpr double kNear = 0.3;     // m from the palm: what a picture is zoomed to
 constexpr double kMargin = 22.0;  // px: room for cones and numbers at the rim
 

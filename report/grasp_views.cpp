@@ -83,20 +83,20 @@ std::vector<bool> blocked_by(const Lines& lines, const std::vector<Facet>& body)
   return blocked;
 }
 
-/// Where a direction lies as a person holding the hand would say it.
+/// Where a direction lies as a person holding the hand would say it: its largest part, and the next when that is large
+/// too, so that two views 45 degrees apart have different words.
 std::string words_of(const GraspBodies& bodies, const Eigen::Vector3d& toward) {
   const auto& hand = bodies.hand;
-  const std::array<std::pair<double, const char*>, 6> sides{
-      {{toward.dot(hand.palm), "from before the palm"},
-       {-toward.dot(hand.palm), "from behind the hand"},
-       {toward.dot(hand.thumb), "from the thumb's side"},
-       {-toward.dot(hand.thumb), "from the side away from the thumb"},
-       {toward.dot(hand.fingers), "from the fingertips"},
-       {-toward.dot(hand.fingers), "from the wrist"}}};
-  const auto* best = std::max_element(sides.begin(), sides.end(),
-                                      [](const auto& a, const auto& b) { return a.first < b.first - 1e-9; });
-  const double rise = toward.dot(bodies.up);
-  return concat({best->second, rise > 0.6 ? ", obliquely from above" : ""});
+  std::array<std::pair<double, const char*>, 6> sides{{{toward.dot(hand.palm), "before the palm"},
+                                                       {-toward.dot(hand.palm), "behind the hand"},
+                                                       {toward.dot(hand.thumb), "the thumb's side"},
+                                                       {-toward.dot(hand.thumb), "the side away from the thumb"},
+                                                       {toward.dot(hand.fingers), "the fingertips"},
+                                                       {-toward.dot(hand.fingers), "the wrist"}}};
+  std::stable_sort(sides.begin(), sides.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::string words = concat({"from ", sides[0].second});
+  if (sides[1].first > 0.45) words += concat({" and ", sides[1].second});
+  return concat({words, toward.dot(bodies.up) > 0.6 ? ", from above" : ""});
 }
 
 std::vector<Eigen::Vector3d> candidates(const GraspBodies& bodies) {
