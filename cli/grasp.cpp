@@ -207,7 +207,8 @@ int finish(const Task& task, const GraspTally& tally, const RunLog& log, const s
   log.finish(tally.ids);
   const auto causes = causes_of(tally.rejected, task.world.scene, task.world.object);
   Json answer = nullptr;
-  if (tally.ids.empty()) answer = tally.answer.empty() ? "no grasp: " + shares(causes, tally.trials) : tally.answer;
+  if (tally.ids.empty())
+    answer = tally.answer.empty() ? std::string("no grasp: ").append(shares(causes, tally.trials)) : tally.answer;
   Json result = document("grasp");
   result.update({{"object", task.world.object},
                  {"grasps", tally.grasps},

@@ -29,7 +29,7 @@ std::string formatted(const char* format, Values... values) {
 }
 
 /// What the scene has to say for the object to have a usual size.
-std::string unit_advice(double scale) {
+const char* unit_advice(double scale) {
   if (scale == 0.001) return "in millimetres (unit: mm)";
   if (scale == 0.01) return "in centimetres (unit: cm)";
   if (scale == 0.0254) return "in inches (unit: in)";
@@ -44,7 +44,7 @@ void require_usual_size(const std::string& name, const robot::MeshReport& report
   std::string sentence = formatted("object %s measures %.3g x %.3g x %.3g m, which no hand holds: a wrong unit?",
                                    name.c_str(), size.x(), size.y(), size.z());
   for (const double scale : report.likely_scales) {
-    sentence += " " + unit_advice(scale) + formatted(" it would be %.3g m long;", scale * size.maxCoeff());
+    sentence += formatted(" %s it would be %.3g m long;", unit_advice(scale), scale * size.maxCoeff());
   }
   sentence.back() = '.';
   throw InputError(sentence);

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <map>
 
+#include "cli/records.hpp"
 #include "cli/stored.hpp"
 #include "core/require.hpp"
 
@@ -154,13 +155,15 @@ std::string base_link(const Json& json, const std::string& file) {
   return text.substr(0, text.find(' '));
 }
 
+std::string numbered(std::size_t index) { return std::string("grasp ").append(std::to_string(index)); }
+
 ImportedPostures from_frogger(const Json& json, const std::string& file, const NamedWorld& world) {
   ImportedPostures result{"frogger", {}, std::nullopt};
   const std::vector<std::string> names = names_at(json, "hand_joint_order", file);
   const Eigen::Isometry3d X_BH = palm_in_base(base_link(json, file), file, world);
   if (json.contains("object") && json.at("object").is_string()) result.object = json.at("object");
   for (const Json& one : json.at("grasps")) {
-    const Entry entry(file, "grasp " + std::to_string(result.postures.size()), one);
+    const Entry entry(file, numbered(result.postures.size()), one);
     const Eigen::Isometry3d X_OB = entry.pose(entry.field("X_object_handbase"), "X_object_handbase");
     const Eigen::VectorXd q = entry.joints(entry.named(names, entry.numbers("hand_q"), "hand_q"), world.hand);
     result.postures.push_back({entry.name(), {X_OB * X_BH, q}});
@@ -172,7 +175,7 @@ ImportedPostures from_document(const Json& json, const std::string& file, const 
   ImportedPostures result{"grasp", {}, std::nullopt};
   if (json.contains("object") && json.at("object").is_string()) result.object = json.at("object");
   for (const Json& one : json.at("grasps")) {
-    const Entry entry(file, "grasp " + std::to_string(result.postures.size()), one);
+    const Entry entry(file, numbered(result.postures.size()), one);
     const Json& joints = entry.field("joints");
     const bool good = joints.is_object() &&
                       std::all_of(joints.begin(), joints.end(), [](const Json& value) { return value.is_number(); });
@@ -198,7 +201,7 @@ ImportedPostures from_export(const Json& json, const std::string& file, const Na
   const auto known = exported_joints(json.at("objects"));
   for (const Json& one : json.at("objects")) {
     if (one.value("kind", "") != kGrasp) continue;
-    const Entry entry(file, "grasp " + one.at("id").get<std::string>().substr(0, 12), one);
+    const Entry entry(file, std::string("grasp ").append(short_id(one.at("id"))), one);
     const Json& fields = entry.field("fields");
     const Json& origin = entry.field("provenance");
     const Json& made_for = origin.at("parameters").at("world");
