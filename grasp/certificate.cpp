@@ -95,4 +95,12 @@ std::optional<Certificate> certify(const std::vector<Contact>& contacts, const Q
   return certify_exactly(edges, contacts, convention);
 }
 
+std::optional<Certificate> certify(const std::vector<Contact>& contacts, const GraspQuality& quality) {
+  auto certificate = certify(contacts, quality.convention);
+  if (certificate && !quality.direction.isZero(0.0)) {
+    certificate->epsilon_bound = epsilon_bound(contacts, quality.convention, quality.direction);
+  }
+  return certificate;
+}
+
 }  // namespace opponens::grasp

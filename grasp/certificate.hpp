@@ -22,6 +22,17 @@ namespace opponens::grasp {
 /// contact_wrenches refuses.
 std::optional<Certificate> certify(const std::vector<Contact>& contacts, const QualityConvention& convention);
 
+/// The same, with epsilon_bound from the quality's own direction (none where that is zero).
+std::optional<Certificate> certify(const std::vector<Contact>& contacts, const GraspQuality& quality);
+
+/// A number that epsilon does not exceed, for certain: h(u)/|u| for the direction u (not zero, need not be of length
+/// 1), h the support function of the convention's wrench set (L1 or L-infinity, quality.hpp). h is evaluated in
+/// rational numbers on the edges in doubles; what their own rounding can amount to, 3e-14 of the forces, is added, and
+/// the quotient is rounded up. Holds for the convention's polyhedral cones, not for the round cones around which they
+/// lie.
+double epsilon_bound(const std::vector<Contact>& contacts, const QualityConvention& convention,
+                     const Eigen::Matrix<double, 6, 1>& direction);
+
 /// What is wrong with a certificate of these contacts, as one sentence; empty: it holds. Exact arithmetic alone: the
 /// force and torsion of each edge fulfil f.n > 0 and |f|^2 |n|^2 + (torsion/r)^2 |n|^4 <= (1 + mu^2) (f.n)^2 with r the
 /// torsion radius (no torsion, or mu = 0, where the model has none), coefficients are positive integers, the weighted
