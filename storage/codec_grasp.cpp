@@ -1,6 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The opponens authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
 #include <string_view>
 
 #include "core/require.hpp"
@@ -117,6 +120,50 @@ std::vector<Contact> decode_contacts(const FieldReader& read) {
   return contacts;
 }
 
+void encode_certificate(Record& record, const std::optional<Certificate>& certificate) {
+  if (!certificate) return;
+  const auto count = static_cast<Eigen::Index>(certificate->edges.size());
+  Eigen::VectorXd contacts(count);
+  Eigen::MatrixXd forces(count, 3);
+  Eigen::VectorXd torsions(count);
+  std::vector<std::string> coefficients;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const CertificateEdge& edge = certificate->edges[static_cast<std::size_t>(i)];
+    contacts[i] = edge.contact;
+    forces.row(i) = edge.force.transpose();
+    torsions[i] = edge.torsion;
+    coefficients.push_back(edge.coefficient);
+  }
+  record.fields["certificate.contact"] = contacts;
+  record.fields["certificate.force"] = forces;
+  record.fields["certificate.torsion"] = torsions;
+  record.fields["certificate.coefficient"] = coefficients;
+  if (certificate->epsilon_bound) record.fields["certificate.epsilon_bound"] = *certificate->epsilon_bound;
+}
+
+/// None where the field of coefficients is absent. Whether it holds is for verify to say, not for a reader.
+std::optional<Certificate> decode_certificate(const Record& record, const FieldReader& read) {
+  if (!record.fields.contains("certificate.coefficient")) return std::nullopt;
+  const std::vector<std::string>& coefficients = read.texts("certificate.coefficient");
+  const Eigen::VectorXd& contacts = read.vector("certificate.contact");
+  const Eigen::MatrixXd& forces = read.matrix("certificate.force");
+  const Eigen::VectorXd& torsions = read.vector("certificate.torsion");
+  const auto count = static_cast<Eigen::Index>(coefficients.size());
+  read.expect(contacts.size() == count, "certificate.contact", "one value per coefficient");
+  read.expect(forces.rows() == count && forces.cols() == 3, "certificate.force", "[coefficients x 3]");
+  read.expect(torsions.size() == count, "certificate.torsion", "one value per coefficient");
+  Certificate certificate;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const bool index =
+        contacts[i] >= 0.0 && contacts[i] <= std::numeric_limits<int>::max() && contacts[i] == std::floor(contacts[i]);
+    read.expect(index, "certificate.contact", "indices of contacts");
+    certificate.edges.push_back(
+        {static_cast<int>(contacts[i]), forces.row(i), torsions[i], coefficients[static_cast<std::size_t>(i)]});
+  }
+  certificate.epsilon_bound = read.optional_number("certificate.epsilon_bound");
+  return certificate;
+}
+
 void encode_arm_solutions(Record& record, const std::vector<ArmSolution>& solutions) {
   const auto count = static_cast<Eigen::Index>(solutions.size());
   const Eigen::Index joints = solutions.empty() ? 0 : solutions.front().q_grasp.size();
@@ -167,6 +214,7 @@ Record encode(const Grasp& grasp, const Provenance& provenance) {
   encode_quality(record, grasp.quality);
   if (grasp.robust) encode_robust(record, *grasp.robust);
   fields["origin"] = enum_text(kGraspOrigins, grasp.origin);
+  encode_certificate(record, grasp.certificate);
   encode_arm_solutions(record, grasp.arm_solutions);
   return record;
 }
@@ -187,6 +235,7 @@ Grasp decode_grasp(const Record& record) {
   if (record.fields.contains("robust.samples")) grasp.robust = decode_robust(read);
   // Stores written before grasps could be imported do not say it.
   if (record.fields.contains("origin")) grasp.origin = read.enumerator<GraspOrigin>("origin", kGraspOrigins);
+  grasp.certificate = decode_certificate(record, read);
   grasp.arm_solutions = decode_arm_solutions(read);
   return grasp;
 }
