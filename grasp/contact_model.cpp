@@ -9,6 +9,10 @@
 
 namespace opponens::grasp {
 
+int edges_per_contact(const QualityConvention& convention) {
+  return static_cast<int>(friction_edges(convention).size());
+}
+
 Eigen::Matrix<double, 6, Eigen::Dynamic> contact_wrenches(const std::vector<Contact>& contacts,
                                                           const QualityConvention& convention) {
   require_contacts(contacts, convention);
