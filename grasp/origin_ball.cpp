@@ -8,6 +8,7 @@
 #include <Eigen/QR>
 
 #include "core/require.hpp"
+#include "grasp/facet_descent.hpp"
 #include "grasp/inner_polytope.hpp"
 #include "grasp/min_norm_point.hpp"
 
@@ -50,13 +51,15 @@ Matrix6Xd complete_simplex(const WrenchSpace& space, const Matrix6Xd& corral) {
 }
 
 /// Grows the polytope until its nearest facet decides, or an upper bound is low enough to give up.
-OriginBall grow(const WrenchSpace& space, const Matrix6Xd& simplex, const BallSearch& search) {
+OriginBall grow(const WrenchSpace& space, const Matrix6Xd& simplex, const BallSearch& search, OriginBall ball) {
   const double scale = space.scale();
   InnerPolytope polytope(simplex, kOnPlane * scale);
-  OriginBall ball{};
-  ball.upper = std::numeric_limits<double>::infinity();
   while (true) {
     const int index = polytope.nearest();
+    if (index < 0) {  // every facet is further away than a plane that no point of the set passes
+      ball.radius = ball.upper;
+      break;
+    }
     const Vector6d normal = polytope.facet(index).normal;
     const double offset = polytope.facet(index).offset;
     const Vector6d p = space.support(normal);
@@ -96,7 +99,16 @@ OriginBall largest_origin_ball(const WrenchSpace& space, const BallSearch& searc
   if (space.curved() && nearest.least > touching) return {-distance, -nearest.least, nearest.direction, false};
   const Matrix6Xd simplex = complete_simplex(space, nearest.corral);
   if (simplex.cols() < 7) return {0.0, 0.0, Vector6d::Zero(), false};
-  OriginBall ball = grow(space, simplex, search);
+  OriginBall ball{};
+  ball.upper = std::numeric_limits<double>::infinity();
+  if (!space.curved() && space.norm() == WrenchNorm::l1) {
+    // What pushes least against the contacts' mean: near the weakest direction of most grasps.
+    const SupportBound bound = descend_facets(space.wrenches(), -space.wrenches().rowwise().mean(), search.at_least);
+    ball.upper = bound.value;
+    ball.direction = bound.direction;
+  }
+  ball.below = ball.upper < search.at_least;
+  if (!ball.below) ball = grow(space, simplex, search, ball);
   ball.inside = !ball.below && ball.radius > touching;
   if (!ball.inside && !ball.below) ball.radius = std::min(ball.radius, 0.0);
   return ball;
