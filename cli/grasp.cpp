@@ -59,7 +59,7 @@ Json grasp_json(const std::string& id, const Grasp& grasp, const std::vector<std
   return {{"id", id},
           {"group", grasp.group},
           {"force_closure", grasp.quality.force_closure()},
-          {"certified", nullptr},  // an exact certificate is not made yet
+          {"certified", grasp.certificate.has_value()},
           {"epsilon", number(grasp.quality.epsilon)},
           {"min_weight", number(grasp.quality.min_weight)},
           {"slack", grasp.slack.norm()},

@@ -57,6 +57,23 @@ struct GraspQuality {
   bool force_closure() const { return state == ClosureState::force_closure; }
 };
 
+/// One force of a certificate, in O, and how much of it is taken.
+struct CertificateEdge {
+  int contact = 0;                                  ///< index into the contacts
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< inside the contact's friction cone, exactly and as stored
+  double torsion = 0.0;     ///< m, soft finger only: the torque about the contact is torsion * n_O
+  std::string coefficient;  ///< positive integer in decimal digits, of any length
+};
+
+/// Proof of force closure of a contact model. With every double read as the rational number that it is, and wrenches
+/// w = [f; p_OC x f + torsion n_O], each edge lies inside its contact's stored cone, sum coefficient w = 0, and the
+/// wrenches have rank 6: they positively span all forces and torques (about any point, in any unit of torque).
+/// Nothing follows about the world, only about the stored contacts. Made by grasp/certificate.hpp.
+struct Certificate {
+  std::vector<CertificateEdge> edges;   ///< few: at least 7
+  std::optional<double> epsilon_bound;  ///< epsilon is no larger, for certain; from the quality's direction
+};
+
 /// One way for the arm to bring the hand there: inverse kinematics of both poses on the same branch.
 struct ArmSolution {
   Eigen::VectorXd q_pregrasp;  ///< [a] rad
@@ -74,6 +91,7 @@ struct Grasp {
   Eigen::Isometry3d X_OH_pregrasp = Eigen::Isometry3d::Identity();  ///< hand retreated
   std::vector<Contact> contacts;
   GraspQuality quality;
+  std::optional<Certificate> certificate;  ///< of force closure; nullopt: not asked for, or there is none
   bool synergy_grasp = true;               ///< slack norm within the stated bound; otherwise "free"
   std::vector<ArmSolution> arm_solutions;  ///< filled by Algorithm 1; empty: not reachable or not yet asked
 };

@@ -15,7 +15,8 @@ struct SupportBound {
 /// origin inside: from the facet that the ray along `start` pierces to the one that the ray along that facet's normal
 /// pierces, and on while it comes nearer to the origin. On the polar set this is the Frank-Wolfe method for the
 /// largest norm: each step is a linear
-/// programme of six rows, and it ends at a facet whose own normal pierces it, after about four. Stops early below `enough`.
+/// programme of six rows, and it ends at a facet whose own normal pierces it, after about four. Stops early below
+/// `enough`.
 SupportBound descend_facets(const Matrix6Xd& wrenches, const Vector6d& start, double enough);
 
 }  // namespace opponens::grasp

@@ -14,7 +14,8 @@ namespace {
 /// unit force. d/dpsi of (n + mu t sin psi + mu r tau cos psi) / sqrt(1 + mu^2 sin^2 psi) has the sign of
 ///   t / sin psi - r tau (1 + mu^2) / cos psi - mu n,
 /// which falls strictly on (0, pi/2): one root, or none and an extreme end where t or tau is zero.
-/// Arguments: the direction's parts along the normal force, the tangent (>= 0), and r times that about the normal (>= 0).
+/// Arguments: the direction's parts along the normal force, the tangent (>= 0), and r times that about the normal (>=
+/// 0).
 double extreme_latitude(double along_n, double along_t, double along_torque, double mu) {
   const double k = along_torque * (1.0 + mu * mu);
   const double m = mu * along_n;

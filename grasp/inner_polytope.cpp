@@ -149,7 +149,8 @@ bool InnerPolytope::make_facet(int from, int side, int apex, const Vector6d& p, 
       if (k != i) key = (key << 16) | static_cast<std::uint64_t>(facet.vertex[k]);
     }
     if (const auto partner = ridges_.match(key, index, i)) {
-      int& waiting = facets_[static_cast<std::size_t>(partner->first)].neighbor[static_cast<std::size_t>(partner->second)];
+      int& waiting =
+          facets_[static_cast<std::size_t>(partner->first)].neighbor[static_cast<std::size_t>(partner->second)];
       if (waiting >= 0) return false;  // three facets at one ridge: not a manifold
       waiting = index;
       facet.neighbor[i] = partner->first;

@@ -15,8 +15,8 @@
 
 namespace opponens::grasp {
 
-/// Table from a ridge of a new cone (its four old vertices) to the facet and side waiting there for a partner. Entries of
-/// earlier steps count as empty, so that nothing is ever cleared.
+/// Table from a ridge of a new cone (its four old vertices) to the facet and side waiting there for a partner. Entries
+/// of earlier steps count as empty, so that nothing is ever cleared.
 class RidgeTable {
  public:
   void begin(int step, std::size_t entries);
@@ -33,9 +33,9 @@ class RidgeTable {
   int step_ = 0;
 };
 
-/// A polytope in R^6 whose vertices belong to a convex set: a simplicial complex kept as in beneath-beyond, each facet with
-/// its six neighbours. Points within `tolerance` of a facet's plane count as on it, so coplanar and repeated points make
-/// no flat facets.
+/// A polytope in R^6 whose vertices belong to a convex set: a simplicial complex kept as in beneath-beyond, each facet
+/// with its six neighbours. Points within `tolerance` of a facet's plane count as on it, so coplanar and repeated
+/// points make no flat facets.
 class InnerPolytope {
  public:
   struct Facet {

@@ -12,7 +12,7 @@
 namespace opponens::grasp {
 namespace {
 
-constexpr double kBoundary = 1e-13;     // N l* below this is rounding
+constexpr double kBoundary = 1e-13;  // N l* below this is rounding
 
 }  // namespace
 

@@ -35,8 +35,8 @@ struct BallSearch {
 /// facet's offset is the radius. (In three dimensions this is the expanding polytope algorithm, van den Bergen 2001.)
 /// Every support value h(u) bounds the radius from above, the nearest facet from below: what a curved set stops at, and
 /// what lets a search give up. Points within 1e-11 scale of a facet's plane count as on it, so coplanar and duplicate
-/// wrenches never make flat facets. The set must span R^6. Cost: O(6) per new facet, whose plane is a combination of its
-/// two neighbours'.
+/// wrenches never make flat facets. The set must span R^6. Cost: O(6) per new facet, whose plane is a combination of
+/// its two neighbours'.
 OriginBall largest_origin_ball(const WrenchSpace& space, const BallSearch& search = {});
 
 }  // namespace opponens::grasp

@@ -74,8 +74,7 @@ int SixRowSimplex::leaving(const Vector6d& direction, bool phase_two) const {
   double best_ratio = std::numeric_limits<double>::infinity();
   for (int row = 0; row < 6; ++row) {
     const bool spent = phase_two && basis_[row] < 0;
-    if (spent ? std::abs(direction[row]) <= 1e-9 * direction.cwiseAbs().maxCoeff() : direction[row] <= least)
-      continue;
+    if (spent ? std::abs(direction[row]) <= 1e-9 * direction.cwiseAbs().maxCoeff() : direction[row] <= least) continue;
     const double ratio = spent ? 0.0 : std::max(value_[row], 0.0) / direction[row];
     if (best < 0 || ratio < best_ratio || (ratio == best_ratio && basis_[row] < basis_[best])) {
       best = row;

@@ -92,7 +92,8 @@ TaskQuality task_quality(const WrenchSpace& space, const Matrix6Xd& loads, doubl
   return task;
 }
 
-Vector6d load_against(const Eigen::Vector3d& force, const Eigen::Vector3d& torque, const QualityConvention& convention) {
+Vector6d load_against(const Eigen::Vector3d& force, const Eigen::Vector3d& torque,
+                      const QualityConvention& convention) {
   Vector6d load;
   load << -force, -torque / convention.rho;
   return load;

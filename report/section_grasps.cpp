@@ -33,6 +33,8 @@ std::string words(ClosureState state) {
       return "not force closure";
     case ClosureState::rank_deficient:
       return "rank deficient";
+    case ClosureState::below_incumbent:
+      return "given up";
   }
   return "";
 }

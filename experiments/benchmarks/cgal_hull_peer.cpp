@@ -32,7 +32,8 @@ CgalHull cgal_hull(const Eigen::Matrix<double, 6, Eigen::Dynamic>& points) {
       ++count;
     }
     const Eigen::Matrix<double, 6, 5> edges = corners.rightCols<5>().colwise() - corners.col(0);
-    Eigen::Matrix<double, 6, 1> normal = edges.colPivHouseholderQr().householderQ() * Eigen::Matrix<double, 6, 1>::Unit(5);
+    Eigen::Matrix<double, 6, 1> normal =
+        edges.colPivHouseholderQr().householderQ() * Eigen::Matrix<double, 6, 1>::Unit(5);
     if (normal.dot(corners.col(0) - center) < 0.0) normal = -normal;
     hull.least_offset = std::min(hull.least_offset, normal.dot(corners.col(0)));
     ++hull.facets;

@@ -75,8 +75,8 @@ std::vector<ContactSet> allegro_sets() {
   for (const fs::path& file : files) {
     const json document = json::parse(std::ifstream(file));
     for (const json& grasp : document["grasps"]) {
-      sets.push_back({file.stem().string(), contacts_of(grasp["contacts"], "n", document["mu"]),
-                      convention_of(document)});
+      sets.push_back(
+          {file.stem().string(), contacts_of(grasp["contacts"], "n", document["mu"]), convention_of(document)});
     }
   }
   return sets;

@@ -33,7 +33,8 @@ using SharedGroup = std::shared_ptr<const Group>;
 
 SharedGroup group(const std::string& name, std::vector<ContactSet> sets) {
   Group made{name, std::move(sets), {}};
-  for (const ContactSet& set : made.sets) made.wrenches.push_back(grasp::contact_wrenches(set.contacts, set.convention));
+  for (const ContactSet& set : made.sets)
+    made.wrenches.push_back(grasp::contact_wrenches(set.contacts, set.convention));
   return std::make_shared<const Group>(std::move(made));
 }
 
