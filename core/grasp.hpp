@@ -21,17 +21,23 @@ struct Contact {
 enum class ContactModel { frictionless, point_with_friction, soft_finger };
 enum class ForceUnit { normal, force };  ///< edge force of normal component 1 (GraspIt!'s), or of length 1 (FRoGGeR's)
 enum class WrenchNorm { l1, linf };
+enum class FrictionCone {
+  pyramid,    ///< the convention's edges
+  quadratic,  ///< the exact circular cone (soft finger: ellipsoid): what pyramids of more and more edges tend to
+};
 enum class ClosureState {
   force_closure,      ///< the origin is strictly inside the wrench hull
   not_force_closure,  ///< the origin is outside or on the boundary of a full-dimensional hull
   rank_deficient,     ///< the wrenches do not span R^6
+  below_incumbent,    ///< given up: epsilon is less than the request asked for; closure is not decided. Never stored
 };
 
 /// What a quality value means; stored with every value (design: "Grasp quality").
 struct QualityConvention {
   ContactModel model = ContactModel::point_with_friction;
   double mu = 0.5;
-  int edges = 8;  ///< cone edges per contact
+  FrictionCone cone = FrictionCone::pyramid;
+  int edges = 8;  ///< cone edges per contact; with a quadratic cone still those of l* and of certificates
   ForceUnit unit = ForceUnit::normal;
   WrenchNorm norm = WrenchNorm::l1;
   double rho = 1.0;             ///< m, torque is divided by it
@@ -43,6 +49,7 @@ struct GraspQuality {
   ClosureState state = ClosureState::rank_deficient;
   std::optional<double> epsilon;  ///< radius of the largest origin-centred ball in the wrench hull; negative: minus the
                                   ///< distance of the origin to the hull; nullopt when the set is rank deficient
+  double epsilon_gap = 0.0;       ///< the true epsilon is at least epsilon and at most epsilon + |epsilon| epsilon_gap
   std::optional<double> min_weight;  ///< l*: max l with W a = 0, 1'a = 1, a >= l; nullopt when W a = 0 has no solution
   std::optional<double> volume;      ///< of the wrench hull; nullopt when not computed
   Eigen::Matrix<double, 6, 1> direction = Eigen::Matrix<double, 6, 1>::Zero();  ///< facet normal that decides epsilon

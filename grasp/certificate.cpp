@@ -97,7 +97,9 @@ std::optional<Certificate> certify(const std::vector<Contact>& contacts, const Q
 
 std::optional<Certificate> certify(const std::vector<Contact>& contacts, const GraspQuality& quality) {
   auto certificate = certify(contacts, quality.convention);
-  if (certificate && !quality.direction.isZero(0.0)) {
+  // The exact support function is that of pyramids, which a quadratic cone's epsilon may exceed.
+  const bool bounded = quality.convention.cone == FrictionCone::pyramid && !quality.direction.isZero(0.0);
+  if (certificate && bounded) {
     certificate->epsilon_bound = epsilon_bound(contacts, quality.convention, quality.direction);
   }
   return certificate;

@@ -153,19 +153,23 @@ std::string words(ClosureState state) {
       return "not force closure";
     case ClosureState::rank_deficient:
       return "rank deficient";
+    case ClosureState::below_incumbent:
+      return "given up";
   }
   return "";
 }
 
 std::string convention_words(const QualityConvention& convention) {
   std::string out = words(convention.model);
+  const bool round = convention.cone == FrictionCone::quadratic;
+  const std::string edges = concat({"cones of ", std::to_string(convention.edges), " edges"});
   if (convention.model == ContactModel::point_with_friction) {
-    out += concat({", friction coefficient \u03BC = ", compact(convention.mu, 3), ", cones of ",
-                   std::to_string(convention.edges), " edges"});
+    out += concat({", friction coefficient \u03BC = ", compact(convention.mu, 3), ", ",
+                   round ? concat({"round cones (l*: ", edges, ")"}) : edges});
   }
   if (convention.model == ContactModel::soft_finger) {
     out += concat({", friction coefficient \u03BC = ", compact(convention.mu, 3), ", torsion radius ",
-                   significant(convention.torsion_radius), " m"});
+                   significant(convention.torsion_radius), " m", round ? ", whole ellipsoids" : ""});
   }
   out +=
       convention.unit == ForceUnit::normal ? "; edge forces with a normal component of 1" : "; edge forces of length 1";

@@ -16,20 +16,25 @@ namespace {
 constexpr std::array<std::string_view, 3> kModels{"frictionless", "point_with_friction", "soft_finger"};
 constexpr std::array<std::string_view, 2> kUnits{"normal", "force"};
 constexpr std::array<std::string_view, 2> kNorms{"l1", "linf"};
+constexpr std::array<std::string_view, 2> kCones{"pyramid", "quadratic"};
 constexpr std::array<std::string_view, 3> kStates{"force_closure", "not_force_closure", "rank_deficient"};
 constexpr std::array<std::string_view, 2> kGraspOrigins{"searched", "imported"};
 
 void encode_quality(Record& record, const GraspQuality& quality) {
+  require(quality.state != ClosureState::below_incumbent, "encode: a quality that was given up is not stored");
   auto& fields = record.fields;
   const QualityConvention& convention = quality.convention;
   fields["quality.state"] = enum_text(kStates, quality.state);
   if (quality.epsilon) fields["quality.epsilon"] = *quality.epsilon;
   if (quality.min_weight) fields["quality.min_weight"] = *quality.min_weight;
   if (quality.volume) fields["quality.volume"] = *quality.volume;
+  if (quality.epsilon_gap != 0.0) fields["quality.epsilon_gap"] = quality.epsilon_gap;
   fields["quality.direction"] = Eigen::VectorXd(quality.direction);
   fields["convention.model"] = enum_text(kModels, convention.model);
   fields["convention.mu"] = convention.mu;
   fields["convention.edges"] = std::int64_t{convention.edges};
+  // Absent means pyramid, which is all there was before.
+  if (convention.cone != FrictionCone::pyramid) fields["convention.cone"] = enum_text(kCones, convention.cone);
   fields["convention.unit"] = enum_text(kUnits, convention.unit);
   fields["convention.norm"] = enum_text(kNorms, convention.norm);
   fields["convention.rho"] = convention.rho;
@@ -37,18 +42,21 @@ void encode_quality(Record& record, const GraspQuality& quality) {
   fields["convention.origin"] = Eigen::VectorXd(convention.origin);
 }
 
-GraspQuality decode_quality(const FieldReader& read) {
+GraspQuality decode_quality(const Record& record, const FieldReader& read) {
   GraspQuality quality;
   QualityConvention& convention = quality.convention;
   quality.state = read.enumerator<ClosureState>("quality.state", kStates);
   quality.epsilon = read.optional_number("quality.epsilon");
   quality.min_weight = read.optional_number("quality.min_weight");
   quality.volume = read.optional_number("quality.volume");
+  quality.epsilon_gap = read.optional_number("quality.epsilon_gap").value_or(0.0);
   read.expect(read.vector("quality.direction").size() == 6, "quality.direction", "6 values");
   quality.direction = read.vector("quality.direction");
   convention.model = read.enumerator<ContactModel>("convention.model", kModels);
   convention.mu = read.number("convention.mu");
   convention.edges = read.small_integer("convention.edges");
+  if (record.fields.contains("convention.cone"))
+    convention.cone = read.enumerator<FrictionCone>("convention.cone", kCones);
   convention.unit = read.enumerator<ForceUnit>("convention.unit", kUnits);
   convention.norm = read.enumerator<WrenchNorm>("convention.norm", kNorms);
   convention.rho = read.number("convention.rho");
@@ -231,7 +239,7 @@ Grasp decode_grasp(const Record& record) {
   grasp.X_OH_pregrasp = decode_pose(read, "X_OH_pregrasp");
   grasp.synergy_grasp = read.integer("synergy_grasp") != 0;
   grasp.contacts = decode_contacts(read);
-  grasp.quality = decode_quality(read);
+  grasp.quality = decode_quality(record, read);
   if (record.fields.contains("robust.samples")) grasp.robust = decode_robust(read);
   // Stores written before grasps could be imported do not say it.
   if (record.fields.contains("origin")) grasp.origin = read.enumerator<GraspOrigin>("origin", kGraspOrigins);
