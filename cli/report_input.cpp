@@ -9,6 +9,7 @@
 
 #include "analysis/analyze.hpp"
 #include "cli/json.hpp"
+#include "cli/report_grasps.hpp"
 #include "cli/report_plan.hpp"
 #include "cli/report_transitions.hpp"
 #include "cli/resources.hpp"
@@ -136,49 +137,6 @@ SynergyPart synergy_part(const Stored<SynergySet>& synergies, const Json& found)
   return part;
 }
 
-/// What the searches of one synergy set in one world came to, by group, in the order of the set's groups. A search that
-/// was repeated with the same settings is one object; with others it counts beside the first.
-std::vector<GraspSearch> grasp_searches(const storage::Store& store, const Stored<SynergySet>& synergies,
-                                        const WorldKey& world) {
-  std::map<std::string, GraspSearch> searches;
-  for (const auto& entry : store.list(kGraspSearch)) {
-    const auto record = store.read(entry.id);
-    if (entry.inputs != std::vector<std::string>{synergies.id} || world_key(record) != world) continue;
-    const Json summary = Json::parse(text_field(record, "summary"));
-    auto& search = searches[record.name];
-    search.trials += summary.at("trials").get<std::int64_t>();
-    for (const auto& [reason, count] : summary.at("rejected").items()) {
-      search.rejected[reason] += count.get<std::int64_t>();
-    }
-  }
-  std::vector<GraspSearch> ordered;
-  for (const auto* group : groups_in_order(synergies.value)) {
-    const auto found = searches.find(group->name);
-    if (found == searches.end()) continue;
-    ordered.push_back(std::move(found->second));
-    ordered.back().group = group->name;
-    searches.erase(found);
-  }
-  return ordered;
-}
-
-GraspPart grasp_part(const storage::Store& store, const Stored<SynergySet>& synergies, const WorldKey& world,
-                     const std::map<std::string, bool>& verdicts) {
-  GraspPart part;
-  part.object = world.object;
-  part.grouped_by = parameters_of(synergies.record).at("group_by");
-  for (auto& stored : grasps_of(store, synergies.id, world)) {
-    const auto verdict = verdicts.find(stored.id);
-    part.items.push_back({stored.id, std::move(stored.value),
-                          verdict == verdicts.end() ? std::nullopt : std::optional<bool>(verdict->second)});
-  }
-  std::stable_sort(part.items.begin(), part.items.end(), [](const GraspItem& a, const GraspItem& b) {
-    return a.grasp.quality.epsilon.value_or(-1.0) > b.grasp.quality.epsilon.value_or(-1.0);
-  });
-  part.searches = grasp_searches(store, synergies, world);
-  return part;
-}
-
 VerifyPart verify_part(const Json& found) {
   VerifyPart part;
   part.checks = found.at("checks").get<std::vector<std::string>>();
@@ -236,7 +194,7 @@ void add_world_and_results(const storage::Store& store, const Stored<SynergySet>
   input.robot = std::move(loaded.robot);
   input.hand = std::move(loaded.hand);
   input.scene = std::move(loaded.scene);
-  input.grasps = grasp_part(store, synergies, world_key(record), verdicts);
+  input.grasps = report_grasps(store, synergies, world_key(record), *input.scene, verdicts);
   input.path = path_part(store, plans);
   input.provenance = chain_of(store, input.path && !input.path->id.empty() ? input.path->id
                                      : grasps.empty()                      ? *leading

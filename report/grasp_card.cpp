@@ -62,12 +62,23 @@ std::string robust_words(const RobustQuality& robust) {
                  ", standard deviations)"});
 }
 
+Markup certificate_words(const std::optional<Certificate>& certificate) {
+  if (!certificate) return text("no");
+  Markup out = badge(true, "yes");
+  out += text(concat({", by ", std::to_string(certificate->edges.size()), " edge forces in exact balance"}));
+  if (certificate->epsilon_bound) {
+    out += text(concat({"; \u03B5 is at most ", significant(*certificate->epsilon_bound), " for certain"}));
+  }
+  return out;
+}
+
 Facts facts_of(const GraspItem& item) {
   const auto& grasp = item.grasp;
   const auto& quality = grasp.quality;
   Facts facts{{"state", badge(quality.force_closure(), words(quality.state))},
               {"\u03B5", text(optional_number(quality.epsilon))},
               {"l*", text(optional_number(quality.min_weight))}};
+  facts.emplace_back("certified", certificate_words(grasp.certificate));
   if (quality.volume) facts.emplace_back("volume", text(significant(*quality.volume)));
   if (grasp.robust) facts.emplace_back("under errors", text(robust_words(*grasp.robust)));
   facts.emplace_back("posture",

@@ -33,19 +33,18 @@ std::string share_words(std::int64_t count, std::int64_t trials) {
   return percent(share, share > 0.0 && share < 0.01 ? 1 : 0);
 }
 
-/// The most frequent reasons; those beyond `shown` together, unless it is one alone.
-std::vector<Bar> common_reasons(const GraspSearch& search, std::size_t shown) {
-  const auto reasons = by_reason(search.rejected);
-  std::vector<Bar> bars;
-  std::int64_t others = 0;
-  for (std::size_t i = 0; i < reasons.size(); ++i) {
-    if (i < shown || reasons.size() == shown + 1) {
-      bars.push_back({reasons[i].reason, reasons[i].trials});
-    } else {
-      others += reasons[i].trials;
-    }
+/// The commonest causes (reasons where no causes are given); those beyond `shown` together, unless it is one alone.
+std::vector<Bar> commonest(const GraspSearch& search, std::size_t shown) {
+  std::vector<Bar> all;
+  for (const auto& cause : search.causes) all.push_back({cause.name, cause.trials});
+  if (all.empty()) {
+    for (const auto& one : by_reason(search.rejected)) all.push_back({one.reason, one.trials});
   }
-  if (others > 0) bars.push_back({concat({std::to_string(reasons.size() - shown), " other reasons"}), others});
+  if (all.size() <= shown + 1) return all;
+  const Bar others{concat({std::to_string(all.size() - shown), " other reasons"}), 0};
+  std::vector<Bar> bars(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(shown));
+  bars.push_back(others);
+  for (std::size_t i = shown; i < all.size(); ++i) bars.back().trials += all[i].trials;
   return bars;
 }
 
@@ -82,14 +81,14 @@ std::vector<Rejection> by_reason(const std::map<std::string, std::int64_t>& reje
 
 std::string rejection_words(const GraspSearch& search, std::size_t shown) {
   std::string words;
-  for (const auto& bar : common_reasons(search, shown)) {
+  for (const auto& bar : commonest(search, shown)) {
     words += concat({words.empty() ? "" : ", ", share_words(bar.trials, search.trials), " ", bar.label});
   }
   return words;
 }
 
 Markup rejection_chart(const GraspSearch& search) {
-  std::vector<Bar> bars = common_reasons(search, kBars);
+  std::vector<Bar> bars = commonest(search, kBars);
   std::int64_t rejected = 0;
   for (const auto& [reason, count] : search.rejected) rejected += count;
   if (search.trials <= 0) return {};
@@ -111,13 +110,20 @@ Markup rejection_chart(const GraspSearch& search) {
 
 Markup rejection_table(const GraspSearch& search) {
   if (search.rejected.empty()) return {};
+  Table causes("By cause", {"cause", "trials", "share", "what may help"});
+  for (const auto& cause : search.causes) {
+    causes.row({text(cause.name), text(grouped(cause.trials)), text(percent(share_of(cause.trials, search.trials))),
+                text(cause.advice)});
+  }
   Table table(concat({"Why trials were rejected, of ", grouped(search.trials)}),
               {"reason", "trials", "share", "most often"});
   for (const auto& one : by_reason(search.rejected)) {
     table.row({text(one.reason), text(grouped(one.trials)), text(percent(share_of(one.trials, search.trials))),
                text(one.bodies.empty() ? "" : concat({one.bodies, " (", grouped(one.of_bodies), ")"}))});
   }
-  return table.str();
+  Markup out = causes.empty() ? Markup{} : causes.str();
+  out += table.str();
+  return out;
 }
 
 }  // namespace opponens::report

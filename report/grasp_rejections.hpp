@@ -23,14 +23,14 @@ struct Rejection {
 /// "reason: bodies" counted by reason, the most frequent first, equal counts in order of their words.
 std::vector<Rejection> by_reason(const std::map<std::string, std::int64_t>& rejected);
 
-/// "81 % support collision, 12 % no IK, 7 % not force closure": shares of the trials, at most `shown` reasons and the
-/// rest as "other reasons".
+/// "81 % collision with shelf, 12 % out of the arm's reach, 7 % not force closure": shares of the trials by cause (by
+/// reason where no causes are given), at most `shown` of them and the rest as "other reasons".
 std::string rejection_words(const GraspSearch& search, std::size_t shown);
 
-/// A bar per reason and one for the trials that were kept, with shares of all trials; nothing without trials.
+/// A bar per cause and one for the trials that were kept, with shares of all trials; nothing without trials.
 Markup rejection_chart(const GraspSearch& search);
 
-/// All reasons with counts, shares and the bodies named most often.
+/// All causes with what may help, and all reasons with the bodies named most often; nothing when none was rejected.
 Markup rejection_table(const GraspSearch& search);
 
 }  // namespace opponens::report

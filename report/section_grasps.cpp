@@ -47,26 +47,46 @@ const GraspSearch* search_of(const GraspPart& part, const std::string& group) {
 }
 
 std::string titled(const GraspPart& part, const std::string& group) {
+  const GraspSearch* search = search_of(part, group);
+  if (search != nullptr && !search->of_group) return group;
   return concat({part.grouped_by.empty() ? "group" : part.grouped_by, " ", group});
+}
+
+std::string grasps_of_object(const GraspPart& part, std::int64_t count) {
+  if (count == 0) return concat({"No grasp of ", part.object});
+  return concat({count == 1 ? std::string("One grasp of ") : concat({grouped(count), " grasps of "}), part.object});
+}
+
+/// Why a search found nothing, with what to try first.
+std::string reasons_of(const GraspSearch& search) {
+  const std::string why = rejection_words(search, 5);
+  const std::string advice = search.causes.empty() ? "" : search.causes.front().advice;
+  return concat({why.empty() ? "no reason is stored" : why, advice.empty() ? "." : ". To try first: ", advice,
+                 advice.empty() ? "" : "."});
 }
 
 /// What the search of a group came to, in a sentence: a group without a grasp says why.
 std::string outcome(const GraspPart& part, const std::string& group, std::size_t grasps) {
+  const auto count = static_cast<std::int64_t>(grasps);
   const GraspSearch* search = search_of(part, group);
-  const std::string found = grasps == 0   ? concat({"No grasp of ", part.object})
-                            : grasps == 1 ? concat({"One grasp of ", part.object})
-                                          : concat({std::to_string(grasps), " grasps of ", part.object});
-  if (search == nullptr) return concat({found, "; no search of this group is stored."});
-  if (search->trials == 0) return concat({found, ": the search made no trial."});
-  if (grasps > 0) return concat({found, " in ", grouped(search->trials), " trials."});
-  const std::string why = rejection_words(*search, 5);
-  return concat({found, " in ", grouped(search->trials), " trials: ", why.empty() ? "no reason is stored" : why, "."});
+  if (search == nullptr) return concat({grasps_of_object(part, count), "; no search of this group is stored."});
+  if (search->trials == 0) return concat({grasps_of_object(part, count), ": the search made no trial."});
+  const std::string trials = concat({" in ", grouped(search->trials), search->trials == 1 ? " trial" : " trials"});
+  if (!search->of_group && search->found > 0) {
+    return concat({grasps_of_object(part, search->found), trials, ", shown with the groups that they are nearest to."});
+  }
+  if (count == 0 || !search->of_group) {
+    return concat({grasps_of_object(part, 0), trials, ": ", reasons_of(*search)});
+  }
+  if (count == search->found) return concat({grasps_of_object(part, count), trials, "."});
+  return concat(
+      {grasps_of_object(part, count), "; the search of this group found ", grouped(search->found), trials, "."});
 }
 
 Markup group_section(const GraspPart& part, const GraspStage* stage, const std::string& group) {
   const auto items = items_of(part, group);
   const std::string title = titled(part, group);
-  Markup out = subheading(concat({"Grasps, ", title}));
+  Markup out = subheading(concat({"Grasps: ", title}));
   out += paragraph(outcome(part, group, items.size()));
   if (const GraspSearch* search = search_of(part, group)) {
     out += rejection_chart(*search);
@@ -82,9 +102,11 @@ Markup group_section(const GraspPart& part, const GraspStage* stage, const std::
   return out;
 }
 
+Markup certified_words(const Grasp& grasp) { return grasp.certificate ? badge(true, "yes") : text("no"); }
+
 Markup grasp_table(const GraspPart& part) {
   Table table("All grasps, the best first", {"grasp", "group", "state", "\u03B5", "l*", "slack (rad)", "posture",
-                                             "contacts", "touching links", "arm solutions", "verified"});
+                                             "contacts", "touching links", "arm solutions", "certified", "verified"});
   for (const auto& item : part.items) {
     const auto& grasp = item.grasp;
     std::vector<std::string> links;
@@ -95,7 +117,7 @@ Markup grasp_table(const GraspPart& part) {
                text(optional_number(grasp.quality.epsilon)), text(optional_number(grasp.quality.min_weight)),
                text(significant(grasp.slack.norm())), text(posture_words(grasp)),
                text(std::to_string(grasp.contacts.size())), text(std::to_string(links.size())),
-               text(std::to_string(grasp.arm_solutions.size())),
+               text(std::to_string(grasp.arm_solutions.size())), certified_words(grasp),
                item.verified ? badge(*item.verified, *item.verified ? "yes" : "no") : text("not checked")});
   }
   return table.str();
@@ -128,7 +150,9 @@ Markup conventions(const GraspPart& part) {
       "that "
       "every edge wrench can keep while all balance each other (at most 1 / their number). Both are positive for force "
       "closure. Slack: how far fitting the fingers to the object took the posture away from the synergies; up to the "
-      "search's bound the grasp counts as one along the synergies, beyond it as free.");
+      "search's bound the grasp counts as one along the synergies, beyond it as free. Certified: exact arithmetic "
+      "proves "
+      "force closure of the stored contacts, which says nothing of how well they describe the world.");
   return out;
 }
 
@@ -141,8 +165,7 @@ Markup grasp_section(const ReportInput& input) {
   const auto& part = *input.grasps;
   const auto groups = group_names(part);
   const auto stage = stage_of(input);
-  Markup out = paragraph(concat({std::to_string(part.items.size()), " grasps of ", part.object, " in ",
-                                 std::to_string(groups.size()), groups.size() == 1 ? " group." : " groups."}));
+  Markup out = paragraph(concat({grasps_of_object(part, static_cast<std::int64_t>(part.items.size())), "."}));
   if (!part.items.empty()) {
     out += stage ? picture_key(*stage) : note("The hand's model or the object's shape was not given: no pictures.");
   }
