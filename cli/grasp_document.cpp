@@ -55,8 +55,10 @@ Json robust_document(const RobustQuality& robust) {
 
 Json quality_of(const Grasp& grasp, const Json& fields) {
   return {{"force_closure", grasp.quality.force_closure()},
+          {"certified", grasp.certificate.has_value()},
           {"state", fields.at("quality.state")},
           {"epsilon", number(grasp.quality.epsilon)},
+          {"epsilon_gap", number(grasp.quality.epsilon_gap)},
           {"min_weight", number(grasp.quality.min_weight)},
           {"volume", number(grasp.quality.volume)},
           {"convention", fields_below(fields, "convention.")},
