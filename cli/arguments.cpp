@@ -134,6 +134,33 @@ void declare_compare(CLI::App& app, CompareOptions& options) {
   app.add_option("--with", options.with, "Store of the second set; default: the same store");
 }
 
+/// What a grasp is held to, and the errors that it is tried under.
+void declare_grasp_limits(CLI::App& app, GraspOptions& options) {
+  app.add_option("--mu", options.mu, "Friction coefficient")->check(CLI::Range(0.0, 10.0))->capture_default_str();
+  app.add_option("--edges", options.edges, "Edges of a friction cone")->check(CLI::Range(3, 64))->capture_default_str();
+  app.add_option("--slack-bound", options.slack_bound, "Of a grasp that is called along the synergies, rad")
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
+  app.add_option("--max-penetration", options.max_penetration, "Of the hand into the object, m")
+      ->check(CLI::Range(1e-5, 0.01))
+      ->capture_default_str();
+  app.add_option("--clearance", options.clearance, "Of the pre-grasp from the object, m")
+      ->check(CLI::Range(0.0, 0.2))
+      ->capture_default_str();
+  app.add_option("--noise-position", options.noise.position, "Error of the object's position, m (one sigma per axis)")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  app.add_option("--noise-angle", options.noise.angle, "Error of the object's turn, rad (one sigma per axis)")
+      ->check(CLI::Range(0.0, 3.2))
+      ->capture_default_str();
+  app.add_option("--noise-friction", options.noise.friction, "Error of the friction coefficient (one sigma)")
+      ->check(CLI::Range(0.0, 10.0))
+      ->capture_default_str();
+  app.add_option("--noise-samples", options.noise.samples, "Disturbed cases per grasp; 0: no quality under errors")
+      ->check(CLI::Range(0, 1000000))
+      ->capture_default_str();
+}
+
 void declare_grasp(CLI::App& app, GraspOptions& options) {
   add_store(app, options.common);
   add_world(app, options);
@@ -143,12 +170,21 @@ void declare_grasp(CLI::App& app, GraspOptions& options) {
   app.add_option("--count", options.count, "Grasps to keep per group")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  app.add_option("--max-trials", options.max_trials, "Trials per group at most, when fewer than --count are found")
+  CLI::Option* const most =
+      app.add_option("--max-trials", options.max_trials, "Trials per group at most, when fewer than --count are found")
+          ->check(CLI::Range(1, 100000000))
+          ->capture_default_str();
+  CLI::Option* const least =
+      app.add_option("--min-trials", options.min_trials, "Trials per group at least, though --count are found sooner")
+          ->check(CLI::Range(0, 100000000))
+          ->capture_default_str();
+  app.add_option("--trials", options.trials, "Exactly so many trials per group")
       ->check(CLI::Range(1, 100000000))
-      ->capture_default_str();
-  app.add_option("--min-trials", options.min_trials, "Trials per group at least, though --count are found sooner")
-      ->check(CLI::Range(0, 100000000))
-      ->capture_default_str();
+      ->excludes(most)
+      ->excludes(least);
+  app.add_flag("--free-joints", options.free_joints, "Search over all joints of the hand, not along synergies");
+  app.add_option("--import", options.import, "Check and store the grasps of this file; no search");
+  declare_grasp_limits(app, options);
 }
 
 void declare_plan(CLI::App& app, PlanOptions& options) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cli/console.hpp"
+#include "core/grasp.hpp"
 
 namespace opponens::cli {
 
@@ -70,6 +71,15 @@ struct GraspOptions {
   int count = 5;
   int max_trials = 2000;
   int min_trials = 256;
+  std::optional<int> trials{};     ///< exactly so many, in place of both bounds
+  double mu = 0.5;                 ///< friction coefficient
+  int edges = 8;                   ///< of a friction cone
+  double slack_bound = 0.3;        ///< rad, of a synergy grasp
+  double max_penetration = 0.001;  ///< m, of the hand into the object
+  double clearance = 0.01;         ///< m, of the pre-grasp from the object
+  bool free_joints = false;        ///< search over all joints, not along synergies
+  GraspNoise noise{};              ///< samples 0: no quality under errors
+  std::string import{};            ///< file of grasps made elsewhere; empty: search
 };
 struct PlanOptions {
   Common common{};

@@ -6,7 +6,9 @@
 #include <unordered_set>
 
 #include "cli/commands.hpp"
+#include "cli/export_grasps.hpp"
 #include "cli/export_table.hpp"
+#include "cli/grasp_document.hpp"
 #include "cli/json.hpp"
 #include "cli/records.hpp"
 #include "cli/stored.hpp"
@@ -64,8 +66,37 @@ int export_file(const storage::Store& store, const ExportOptions& options, const
   return kDone;
 }
 
+void advise_unnamed(const Console& console, const std::string& id, const char* where) {
+  console.advise("grasp " + short_id(id) +
+                 ": the store does not hold the synergies that it was made from, which name its "
+                 "joints; it is left out of " +
+                 where);
+}
+
+/// The grasps among the objects in the form of `grasp --json`, which `grasp --import` reads; "object" when all are of
+/// one.
+void append_grasps(const storage::Store& store, const std::vector<storage::IndexEntry>& entries, const fs::path& file,
+                   const Console& console) {
+  GraspDocuments documents(store);
+  std::set<std::string> objects;
+  std::string separator = ",\"grasps\":[\n";
+  for (const auto& entry : entries) {
+    if (entry.kind != kGrasp) continue;
+    const auto document = documents.of(entry.id, store.read(entry.id));
+    if (!document) advise_unnamed(console, entry.id, "'grasps'");
+    if (!document) continue;
+    objects.insert(document->at("object").get<std::string>());
+    storage::append_bytes(file, separator + document->dump());
+    separator = ",\n";
+  }
+  if (objects.empty()) return;
+  const std::string common = objects.size() == 1 ? ",\"object\":" + Json(*objects.begin()).dump() : "";
+  storage::append_bytes(file, "\n]" + common);
+}
+
 /// One JSON document with everything that the objects hold, written object by object.
-void export_json(const storage::Store& store, const std::vector<storage::IndexEntry>& entries, const fs::path& out) {
+void export_json(const storage::Store& store, const std::vector<storage::IndexEntry>& entries, const fs::path& out,
+                 const Console& console) {
   const storage::Draft draft(out);
   std::string text = "{\"schema\":" + std::to_string(kDocumentSchema) + ",\"command\":\"export\",\"objects\":[";
   storage::write_new_file(draft.path(), {}, storage::Durable::no);
@@ -74,32 +105,49 @@ void export_json(const storage::Store& store, const std::vector<storage::IndexEn
     storage::append_bytes(draft.path(), text);
     text.clear();
   }
-  storage::append_bytes(draft.path(), text + "\n]}\n");
+  storage::append_bytes(draft.path(), text + "\n]");
+  append_grasps(store, entries, draft.path(), console);
+  storage::append_bytes(draft.path(), std::string("}\n"));
   draft.complete();
 }
 
-void export_robomimic(const storage::Store& store, const std::vector<storage::IndexEntry>& entries,
-                      const fs::path& out) {
+void export_robomimic(const storage::Store& store, const std::vector<storage::IndexEntry>& entries, const fs::path& out,
+                      const Console&) {
   storage::RobomimicWriter writer(out);
   for (const auto& entry : entries) writer.add(episode_of(entry.id, store.read(entry.id)));
   writer.finish();
 }
 
-void export_csv(const storage::Store& store, const std::vector<storage::IndexEntry>& entries, const fs::path& out) {
+void export_csv(const storage::Store& store, const std::vector<storage::IndexEntry>& entries, const fs::path& out,
+                const Console& console) {
   TableFolder folder(out);
-  for (const auto& entry : entries) folder.add(entry.id, store.read(entry.id));
+  GraspDocuments documents(store);
+  GraspTables grasps;
+  for (const auto& entry : entries) {
+    const storage::Record record = store.read(entry.id);
+    if (entry.kind != kGrasp) {
+      folder.add(entry.id, record);
+    } else if (const auto document = documents.of(entry.id, record)) {
+      grasps.add(*document);
+    } else {
+      advise_unnamed(console, entry.id, "the tables");
+    }
+  }
+  grasps.write_to(folder);
   folder.finish();
 }
 
 struct Format {
   std::set<std::string> kinds;  ///< empty: all
-  std::function<void(const storage::Store&, const std::vector<storage::IndexEntry>&, const fs::path&)> write;
+  std::function<void(const storage::Store&, const std::vector<storage::IndexEntry>&, const fs::path&, const Console&)>
+      write;
 };
 
 const std::map<std::string, Format>& formats() {
-  static const std::map<std::string, Format> all{{"csv", {{kRecording, kHandMotion, kPath, kSynergySet}, export_csv}},
-                                                 {"json", {{}, export_json}},
-                                                 {"robomimic", {{kRecording, kHandMotion, kPath}, export_robomimic}}};
+  static const std::map<std::string, Format> all{
+      {"csv", {{kRecording, kHandMotion, kPath, kSynergySet, kGrasp}, export_csv}},
+      {"json", {{}, export_json}},
+      {"robomimic", {{kRecording, kHandMotion, kPath}, export_robomimic}}};
   return all;
 }
 
@@ -114,7 +162,7 @@ int export_as(const storage::Store& store, const ExportOptions& options, const C
   }
   const std::size_t left_out = std::erase_if(entries, unfit);
   if (entries.empty()) throw InputError("the store holds nothing that has a form in " + options.format);
-  format.write(store, entries, options.out);
+  format.write(store, entries, options.out, console);
   console.say(std::to_string(entries.size()) + " objects in " + options.out.string() +
               (left_out == 0 ? "" : "; " + std::to_string(left_out) + " of other kinds left out"));
   Json result = document("export");

@@ -19,20 +19,6 @@ namespace fs = std::filesystem;
 
 constexpr std::array<const char*, 4> kIndexColumns{"file", "id", "kind", "name"};
 
-/// Quoted only where it has to be.
-std::string cell(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char letter : text) quoted.append(letter == '"' ? 2 : 1, letter);
-  return quoted.append("\"");
-}
-
-void append_number(std::string& text, double value) {
-  std::array<char, 32> digits{};
-  std::snprintf(digits.data(), digits.size(), "%.17g", value);
-  text += digits.data();
-}
-
 template <typename Derived>
 void append_row(std::string& text, const std::string& first, const Eigen::DenseBase<Derived>& values) {
   text += first;
@@ -76,6 +62,19 @@ std::string synergy_table(const std::vector<std::string>& joints, const SynergyG
 }
 
 }  // namespace
+
+std::string cell(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char letter : text) quoted.append(letter == '"' ? 2 : 1, letter);
+  return quoted.append("\"");
+}
+
+void append_number(std::string& text, double value) {
+  std::array<char, 32> digits{};
+  std::snprintf(digits.data(), digits.size(), "%.17g", value);
+  text += digits.data();
+}
 
 storage::Episode episode_of(const std::string& id, const storage::Record& record) {
   storage::Episode episode{id, record.name, record.kind, {}, {}, {}, {}};

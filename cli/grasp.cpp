@@ -1,50 +1,27 @@
 // SPDX-FileCopyrightText: 2026 The opponens authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "grasp/grasp_search.hpp"
-
 #include <algorithm>
 #include <cstdio>
+#include <optional>
 
 #include "cli/commands.hpp"
+#include "cli/grasp_causes.hpp"
+#include "cli/grasp_preconditions.hpp"
+#include "cli/grasp_reach.hpp"
+#include "cli/grasp_settings.hpp"
+#include "cli/import_grasps.hpp"
 #include "cli/json.hpp"
 #include "cli/stored.hpp"
 #include "cli/world.hpp"
 #include "core/require.hpp"
-#include "motion/goal_configurations.hpp"
-#include "robot/collision.hpp"
-#include "robot/inverse_kinematics.hpp"
+#include "grasp/given_grasps.hpp"
+#include "grasp/grasp_search.hpp"
+#include "grasp/robust_quality.hpp"
+#include "robot/mesh.hpp"
 #include "storage/codec.hpp"
 
 namespace opponens::cli {
 namespace {
-
-constexpr double kReachResolution = 0.02;  // rad, spacing of the checks along a closing segment
-
-/// Algorithm 1, lines 6 and 7, as the search's acceptance test.
-class Reach {
- public:
-  explicit Reach(const NamedWorld& world)
-      : world_(world),
-        kinematics_(robot::make_inverse_kinematics(world.robot)),
-        free_space_(world.robot, world.scene),
-        closing_(world.robot, world.scene, world.hand_object_pairs()),
-        depth_(world.robot, world.scene, world.object, world.hand_links()),
-        X_RO_(world.X_RO()) {}
-
-  std::string operator()(Grasp& grasp) const {
-    return motion::reach(grasp, world_.robot, kinematics_, X_RO_, free_space_, closing_, kReachResolution, {&depth_});
-  }
-
-  const robot::CollisionChecker& checker() const { return free_space_; }
-
- private:
-  const NamedWorld& world_;
-  robot::InverseKinematics kinematics_;
-  robot::CollisionChecker free_space_;
-  robot::CollisionChecker closing_;
-  motion::ContactDepth depth_;
-  Eigen::Isometry3d X_RO_;
-};
 
 Json contacts_json(const std::vector<Contact>& contacts) {
   Json result = Json::array();
@@ -55,13 +32,28 @@ Json contacts_json(const std::vector<Contact>& contacts) {
   return result;
 }
 
+Json robust_json(const std::optional<RobustQuality>& robust) {
+  if (!robust) return nullptr;
+  return {{"force_closure", robust->force_closure},
+          {"interval", {robust->force_closure_low, robust->force_closure_high}},
+          {"epsilon_mean", robust->epsilon_mean},
+          {"epsilon_low", robust->epsilon_low},
+          {"noise",
+           {{"position", robust->noise.position},
+            {"angle", robust->noise.angle},
+            {"friction", robust->noise.friction},
+            {"samples", robust->noise.samples}}}};
+}
+
 Json grasp_json(const std::string& id, const Grasp& grasp, const std::vector<std::string>& joints) {
   return {{"id", id},
           {"group", grasp.group},
           {"force_closure", grasp.quality.force_closure()},
-          {"certified", nullptr},  // an exact certificate is not made yet
+          {"certified", grasp.certificate.has_value()},
           {"epsilon", number(grasp.quality.epsilon)},
           {"min_weight", number(grasp.quality.min_weight)},
+          {"robust", robust_json(grasp.robust)},
+          {"origin", grasp.origin == GraspOrigin::imported ? "imported" : "searched"},
           {"slack", grasp.slack.norm()},
           {"synergy_grasp", grasp.synergy_grasp},
           {"X_OH", pose(grasp.X_OH)},
@@ -72,82 +64,165 @@ Json grasp_json(const std::string& id, const Grasp& grasp, const std::vector<std
           {"contacts", contacts_json(grasp.contacts)}};
 }
 
-/// The commonest reasons for a person: without the bodies that are named after a colon (the stored summary keeps them).
-std::string reasons(const std::map<std::string, std::int64_t>& rejected, std::int64_t trials) {
-  constexpr std::size_t kShown = 5;
-  std::map<std::string, std::int64_t> merged;
-  for (const auto& [reason, count] : rejected) merged[reason.substr(0, reason.find(": "))] += count;
-  std::vector<std::pair<std::int64_t, std::string>> sorted;
-  for (const auto& [reason, count] : merged) sorted.emplace_back(count, reason);
-  std::sort(sorted.rbegin(), sorted.rend());
-  std::string text;
-  const auto add = [&](std::int64_t count, const std::string& reason) {
-    const auto percent = 100.0 * static_cast<double>(count) / static_cast<double>(std::max<std::int64_t>(trials, 1));
-    char part[32];
-    std::snprintf(part, sizeof part, "%.0f %% ", percent);
-    text += (text.empty() ? "" : ", ") + (part + reason);
-  };
-  std::int64_t others = 0;
-  for (std::size_t i = 0; i < sorted.size(); ++i) {
-    if (i < kShown) add(sorted[i].first, sorted[i].second);
-    if (i >= kShown) others += sorted[i].first;
-  }
-  if (others > 0) add(others, "other");
-  return text;
-}
-
-std::vector<SynergyGroup> chosen_groups(const SynergySet& set, const std::string& name) {
-  if (name == "all") return set.grasp;
-  for (const auto& group : set.grasp) {
-    if (group.name == name) return {group};
-  }
-  std::string known;
-  for (const auto& group : set.grasp) known += (known.empty() ? "" : ", ") + group.name;
-  throw InputError("--group " + name + ": no such group; there are: " + known);
-}
+/// What one command works on.
+struct Task {
+  const GraspOptions& options;
+  const Console& console;
+  const NamedWorld& world;
+  const Stored<SynergySet>& synergies;
+  const Reach& reach;
+  grasp::SearchSettings settings;
+  storage::Store& store;
+};
 
 struct GraspTally {
   Json grasps = Json::array();
   Json groups = Json::array();
+  Json refused = Json::array();  ///< of an imported file
   std::vector<std::string> ids;
   std::int64_t trials = 0;
   std::int64_t evaluations = 0;
   std::map<std::string, std::int64_t> rejected;
+  std::string answer;  ///< why there is no grasp, when that was clear before any trial
 };
 
-void store_group(const SynergyGroup& group, const grasp::SearchResult& found, const NamedWorld& world,
-                 const storage::Provenance& origin, storage::Store& store, GraspTally& tally) {
-  const Json summary = {{"name", group.name},
+/// Quality under errors of every grasp, each from a stream of its own.
+void add_robust_quality(const Task& task, const std::string& name, std::vector<Grasp>& grasps) {
+  if (task.options.noise.samples == 0 || grasps.empty()) return;
+  const auto& geometry = task.world.scene.body(task.world.object).geometry;
+  const robot::MeshDistance object(std::make_shared<const robot::TriangleMesh>(robot::merge(geometry)));
+  for (std::size_t i = 0; i < grasps.size(); ++i) {
+    Rng rng = stream(task.options.common.seed, "robust/" + name + "/" + std::to_string(i));
+    grasps[i].robust = grasp::robust_quality(task.world.hand, object, grasps[i], task.options.noise, rng);
+  }
+}
+
+/// Stores the grasps of one search, or one file, and what was rejected.
+void store_found(const Task& task, const std::string& name, const grasp::SearchResult& found, const Json& more,
+                 GraspTally& tally) {
+  const Json summary = {{"name", name},
                         {"found", found.grasps.size()},
                         {"trials", found.trials},
                         {"evaluations", found.evaluations},
                         {"rejected", found.rejected}};
+  Json parameters = settings_json(task.options);
+  parameters.update({{"world", task.world.parameters}, {"group", name}});
+  parameters.update(more);
+  const auto origin = provenance("grasp", {task.synergies.id}, task.world.files, parameters, task.options.common.seed);
   std::vector<storage::Record> records;
   for (const auto& one : found.grasps) records.push_back(storage::encode(one, origin));
-  records.push_back({kGraspSearch, group.name, origin, {{"summary", summary.dump()}}});
-  auto ids = store.commit(records);
+  records.push_back({kGraspSearch, name, origin, {{"summary", summary.dump()}}});
+  auto ids = task.store.commit(records);
   ids.pop_back();
   for (std::size_t i = 0; i < ids.size(); ++i) {
-    tally.grasps.push_back(grasp_json(ids[i], found.grasps[i], world.hand.joint_names()));
+    tally.grasps.push_back(grasp_json(ids[i], found.grasps[i], task.world.hand.joint_names()));
     tally.ids.push_back(ids[i]);
   }
-  tally.groups.push_back(summary);
+  Json shown = summary;
+  shown["causes"] = causes_json(causes_of(found.rejected, task.world.scene, task.world.object), found.trials);
+  tally.groups.push_back(shown);
   tally.trials += found.trials;
   tally.evaluations += found.evaluations;
   for (const auto& [reason, count] : found.rejected) tally.rejected[reason] += count;
 }
 
-void say_group(const Console& console, const SynergyGroup& group, const grasp::SearchResult& found) {
-  if (found.grasps.empty()) {
-    console.say("group " + group.name + ": no grasp in " + std::to_string(found.trials) +
-                " trials: " + reasons(found.rejected, found.trials));
-    return;
-  }
+void say_none(const Task& task, const std::string& what, const grasp::SearchResult& found) {
+  const auto causes = causes_of(found.rejected, task.world.scene, task.world.object);
+  task.console.say(what + ": no grasp in " + std::to_string(found.trials) +
+                   (found.trials == 1 ? " trial: " : " trials: ") + shares(causes, found.trials));
+  if (!causes.empty() && !causes.front().advice.empty()) task.console.say("  to try first: " + causes.front().advice);
+  if (task.settings.mu == 0.0) task.console.say("  without friction (--mu 0) a grasp needs seven contacts at least");
+}
+
+void say_found(const Task& task, const std::string& what, const grasp::SearchResult& found) {
+  if (found.grasps.empty()) return say_none(task, what, found);
+  const Grasp& best = found.grasps.front();
   char text[160];
-  std::snprintf(text, sizeof text, "group %s: %zu grasps in %lld trials, best epsilon %.4f", group.name.c_str(),
-                found.grasps.size(), static_cast<long long>(found.trials),
-                found.grasps.front().quality.epsilon.value_or(0.0));
-  console.say(text);
+  std::snprintf(text, sizeof text, ": %zu grasps in %lld trials, best epsilon %.4f", found.grasps.size(),
+                static_cast<long long>(found.trials), best.quality.epsilon.value_or(0.0));
+  std::string line = what + text;
+  if (best.robust) {
+    std::snprintf(text, sizeof text,
+                  "; under errors force closure in %.0f %% [%.0f, %.0f], epsilon's 5 %% quantile %.4f",
+                  100.0 * best.robust->force_closure, 100.0 * best.robust->force_closure_low,
+                  100.0 * best.robust->force_closure_high, best.robust->epsilon_low);
+    line += text;
+  }
+  task.console.say(line);
+}
+
+void search_group(const Task& task, const SynergyGroup& group, const std::vector<SynergyGroup>& named,
+                  GraspTally& tally) {
+  Progress progress(task.console, "grasps of " + group.name);
+  grasp::SearchResult found = grasp::search_grasps(
+      task.world.hand, task.world.scene, task.world.object, group, task.synergies.value.pre_grasp.box, task.settings,
+      task.options.common.seed, [&task](Grasp& candidate) { return task.reach(candidate); },
+      [&progress](std::int64_t done, std::int64_t total) { progress.update(done, total); });
+  if (task.options.free_joints) {  // what a free grasp is along the groups that there are
+    for (Grasp& one : found.grasps) {
+      const SynergyGroup& nearest = named[grasp::nearest_group(named, one.q_grasp)];
+      grasp::describe_along(nearest, task.settings.slack_bound, one);
+    }
+  }
+  add_robust_quality(task, group.name, found.grasps);
+  store_found(task, group.name, found, Json::object(), tally);
+  say_found(task, task.options.free_joints ? group.name : "group " + group.name, found);
+}
+
+/// The grasps of a file, held to the same checks.
+void import_file(const Task& task, const std::vector<SynergyGroup>& groups, GraspTally& tally) {
+  const std::filesystem::path file(task.options.import);
+  const ImportedPostures imported = import_grasps(file, task.world);
+  if (imported.object && *imported.object != task.world.object) {
+    task.console.advise(file.string() + ": its grasps are of " + *imported.object + ", not of " + task.world.object +
+                        "; they are taken in the frame of " + task.world.object);
+  }
+  std::vector<grasp::HandPose> postures;
+  for (const auto& one : imported.postures) postures.push_back(one.posture);
+  auto checked = grasp::check_given(
+      {task.world.hand, task.world.scene, task.world.object, groups, task.synergies.value.pre_grasp.box, task.settings},
+      postures, [&task](Grasp& candidate) { return task.reach(candidate); });
+  grasp::SearchResult found;
+  found.trials = static_cast<std::int64_t>(postures.size());
+  for (std::size_t i = 0; i < checked.size(); ++i) {
+    if (checked[i].grasp) {
+      found.grasps.push_back(std::move(*checked[i].grasp));
+      continue;
+    }
+    ++found.rejected[checked[i].reason];
+    tally.refused.push_back({{"name", imported.postures[i].name}, {"reason", checked[i].reason}});
+    task.console.say(imported.postures[i].name + " refused: " + checked[i].reason);
+  }
+  add_robust_quality(task, "imported", found.grasps);
+  const Json origin = {
+      {"import", {{"file", portable_name(file)}, {"sha256", file_sha256(file)}, {"form", imported.form}}}};
+  store_found(task, "imported", found, origin, tally);
+  task.console.say(std::to_string(found.grasps.size()) + " of " + std::to_string(found.trials) + " grasps of " +
+                   file.string() + " are good here");
+  if (!found.grasps.empty()) say_found(task, "imported", found);
+  if (found.grasps.empty()) say_none(task, "imported", found);
+}
+
+int finish(const Task& task, const GraspTally& tally, const RunLog& log, const std::vector<std::string>& warnings) {
+  log.finish(tally.ids);
+  const auto causes = causes_of(tally.rejected, task.world.scene, task.world.object);
+  Json answer = nullptr;
+  if (tally.ids.empty())
+    answer = tally.answer.empty() ? std::string("no grasp: ").append(shares(causes, tally.trials)) : tally.answer;
+  Json result = document("grasp");
+  result.update({{"object", task.world.object},
+                 {"grasps", tally.grasps},
+                 {"groups", tally.groups},
+                 {"trials", tally.trials},
+                 {"evaluations", tally.evaluations},
+                 {"cpu_seconds", log.cpu_seconds()},
+                 {"rejected", tally.rejected},
+                 {"answer", answer},
+                 {"causes", causes_json(causes, tally.trials)},
+                 {"warnings", warnings}});
+  if (!task.options.import.empty()) result["refused"] = tally.refused;
+  task.console.document(result.dump());
+  return tally.ids.empty() ? kNoAnswer : kDone;
 }
 
 }  // namespace
@@ -159,43 +234,26 @@ int grasp(const GraspOptions& options, const Console& console) {
   const auto synergies = newest_synergies(store);
   const NamedWorld world = load_world(options.robot, options.scene, options.object);
   require_same_joints(synergies.value, world.hand);
-  const Reach reach(world);
+  require_graspable(world);
+  const auto groups = chosen_groups(synergies.value, options);
+  const Reach reach(world, options.max_penetration);
   const auto warnings = warnings_of(world, reach.checker());
-  const auto groups = chosen_groups(synergies.value, options.group);
   for (const auto& warning : warnings) console.advise(warning);
-
-  grasp::SearchSettings settings;
-  settings.count = options.count;
-  settings.max_trials = options.max_trials;
-  settings.min_trials = options.min_trials;
-  settings.threads = threads;
+  const Task task{options, console, world, synergies, reach, search_settings(options, threads), store};
   GraspTally tally;
-  for (const auto& group : groups) {
-    Progress progress(console, "grasps of group " + group.name);
-    const auto found = grasp::search_grasps(
-        world.hand, world.scene, world.object, group, synergies.value.pre_grasp.box, settings, options.common.seed,
-        [&reach](Grasp& candidate) { return reach(candidate); },
-        [&progress](std::int64_t done, std::int64_t total) { progress.update(done, total); });
-    const Json parameters = {{"world", world.parameters},
-                             {"group", group.name},
-                             {"count", options.count},
-                             {"max_trials", options.max_trials},
-                             {"min_trials", options.min_trials}};
-    const auto origin = provenance("grasp", {synergies.id}, world.files, parameters, options.common.seed);
-    store_group(group, found, world, origin, store, tally);
-    say_group(console, group, found);
+  if (const auto far = out_of_reach(world)) {
+    console.say(*far);
+    tally.answer = *far;
+    return finish(task, tally, log, warnings);
   }
-  log.finish(tally.ids);
-  Json result = document("grasp");
-  result.update({{"grasps", tally.grasps},
-                 {"groups", tally.groups},
-                 {"trials", tally.trials},
-                 {"evaluations", tally.evaluations},
-                 {"cpu_seconds", log.cpu_seconds()},
-                 {"rejected", tally.rejected},
-                 {"warnings", warnings}});
-  console.document(result.dump());
-  return tally.ids.empty() ? kNoAnswer : kDone;
+  if (!options.import.empty()) {
+    import_file(task, groups, tally);
+  } else if (options.free_joints) {
+    search_group(task, free_joints_group(world.hand), groups, tally);
+  } else {
+    for (const auto& group : groups) search_group(task, group, groups, tally);
+  }
+  return finish(task, tally, log, warnings);
 }
 
 }  // namespace opponens::cli

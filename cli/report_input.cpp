@@ -9,6 +9,7 @@
 
 #include "analysis/analyze.hpp"
 #include "cli/json.hpp"
+#include "cli/report_grasps.hpp"
 #include "cli/report_plan.hpp"
 #include "cli/report_transitions.hpp"
 #include "cli/resources.hpp"
@@ -136,29 +137,6 @@ SynergyPart synergy_part(const Stored<SynergySet>& synergies, const Json& found)
   return part;
 }
 
-GraspPart grasp_part(const storage::Store& store, const std::string& synergies, const WorldKey& world,
-                     const std::map<std::string, bool>& verdicts) {
-  GraspPart part;
-  part.object = world.object;
-  for (auto& stored : grasps_of(store, synergies, world)) {
-    const auto verdict = verdicts.find(stored.id);
-    part.items.push_back({stored.id, std::move(stored.value),
-                          verdict == verdicts.end() ? std::nullopt : std::optional<bool>(verdict->second)});
-  }
-  std::stable_sort(part.items.begin(), part.items.end(), [](const GraspItem& a, const GraspItem& b) {
-    return a.grasp.quality.epsilon.value_or(-1.0) > b.grasp.quality.epsilon.value_or(-1.0);
-  });
-  for (const auto& entry : store.list(kGraspSearch)) {
-    const auto record = store.read(entry.id);
-    if (entry.inputs != std::vector<std::string>{synergies} || world_key(record) != world) continue;
-    const Json summary = Json::parse(text_field(record, "summary"));
-    part.trials += summary.at("trials").get<std::int64_t>();
-    for (const auto& [reason, count] : summary.at("rejected").items())
-      part.rejected[reason] += count.get<std::int64_t>();
-  }
-  return part;
-}
-
 VerifyPart verify_part(const Json& found) {
   VerifyPart part;
   part.checks = found.at("checks").get<std::vector<std::string>>();
@@ -186,28 +164,41 @@ std::vector<ProvenanceItem> chain_of(const storage::Store& store, const std::str
   return items;
 }
 
-void add_world_and_results(const storage::Store& store, const std::string& synergies, ReportInput& input) {
+/// The object whose world the report is about: the newest planning, else the newest grasp, else the newest search, also
+/// one that found nothing: the report then says why.
+std::optional<std::string> leading_object(const storage::Store& store, const std::string& synergies,
+                                          const std::vector<storage::IndexEntry>& plans,
+                                          const std::vector<storage::IndexEntry>& grasps) {
+  if (!plans.empty()) return plans.front().id;
+  if (!grasps.empty()) return grasps.front().id;
+  const auto searches = made_from(store, kGraspSearch, {synergies});
+  return searches.empty() ? std::nullopt : std::optional<std::string>(searches.front().id);
+}
+
+void add_world_and_results(const storage::Store& store, const Stored<SynergySet>& synergies, ReportInput& input) {
   std::map<std::string, bool> verdicts;
   if (const auto id = newest(store, kVerdicts)) {
     const Json found = Json::parse(text_field(store.read(*id), "verdicts"));
     input.verification = verify_part(found);
     for (const auto& verdict : input.verification->verdicts) verdicts[verdict.id] = verdict.passed;
   }
-  const auto grasps = made_from(store, kGrasp, {synergies});
-  if (grasps.empty()) return;
+  const auto grasps = made_from(store, kGrasp, {synergies.id});
   std::set<std::string> grasp_ids;
   for (const auto& entry : grasps) grasp_ids.insert(entry.id);
   const auto plans = made_from(store, kPlanRuns, grasp_ids);
-  const std::string& newest_grasp = grasps.front().id;
-  const storage::Record record = store.read(plans.empty() ? newest_grasp : plans.front().id);
+  const auto leading = leading_object(store, synergies.id, plans, grasps);
+  if (!leading) return;
+  const storage::Record record = store.read(*leading);
   const Json world = parameters_of(record).at("world");
   NamedWorld loaded = load_world(world.at("robot"), world.at("scene"), world.at("object"));
   input.robot = std::move(loaded.robot);
   input.hand = std::move(loaded.hand);
   input.scene = std::move(loaded.scene);
-  input.grasps = grasp_part(store, synergies, world_key(record), verdicts);
+  input.grasps = report_grasps(store, synergies, world_key(record), *input.scene, verdicts);
   input.path = path_part(store, plans);
-  input.provenance = chain_of(store, input.path && !input.path->id.empty() ? input.path->id : newest_grasp);
+  input.provenance = chain_of(store, input.path && !input.path->id.empty() ? input.path->id
+                                     : grasps.empty()                      ? *leading
+                                                                           : grasps.front().id);
 }
 
 /// The motions that a synergy set was made from, whatever the store holds beside them.
@@ -244,7 +235,7 @@ ReportInput report_input(const storage::Store& store) {
   input.transitions = transition_part(motions, found, split ? parameters.at("transition") : Json(""));
   input.synergies = synergy_part(synergies, found);
   input.provenance = chain_of(store, synergies.id);
-  add_world_and_results(store, synergies.id, input);
+  add_world_and_results(store, synergies, input);
   if (!input.hand && motions.front().record.kind == kHandMotion) {
     input.hand.emplace(hand_of_motion(motions.front().record));
   }

@@ -68,7 +68,8 @@ Verdict grasp_verdict(const storage::Store& store, const storage::Record& record
   const SynergySet synergies = storage::decode_synergy_set(store.read(record.provenance.inputs.at(0)));
   const SynergyGroup& group = group_named(synergies, grasp.group);
   const NamedWorld& world = shared.world_of(parameters_of(record).at("world")).named;
-  const opponens::verify::GraspCheckSettings settings;
+  opponens::verify::GraspCheckSettings settings;
+  settings.slack_bound = parameters_of(record).value("slack_bound", settings.slack_bound);
   Verdict verdict =
       opponens::verify::check_grasp(grasp, {&group.box, &world.hand, &world.scene.body(world.object)}, settings);
   opponens::verify::check_arm_solutions(grasp, world.robot, world.X_RO(), settings.tolerance, verdict);
@@ -116,7 +117,9 @@ struct Tally {
   Json failed = Json::array();
   Json verdicts = Json::array();
   std::vector<std::string> ids;
-  Verdict worst;  ///< of all paths together
+  std::int64_t certificates = 0;         ///< grasps that passed and have one, which holds
+  std::int64_t without_certificate = 0;  ///< grasps that passed and have none
+  Verdict worst;                         ///< of all paths together
 };
 
 void add(const std::string& id, const std::string& kind, const Verdict& verdict, Tally& tally) {
@@ -125,6 +128,7 @@ void add(const std::string& id, const std::string& kind, const Verdict& verdict,
   tally.verdicts.push_back({{"id", id}, {"kind", kind}, {"passed", verdict.ok}, {"reason", reason}});
   tally.ids.push_back(id);
   if (!verdict.ok) tally.failed.push_back({{"id", id}, {"reason", reason}});
+  if (verdict.ok && kind == kGrasp) ++(verdict.certified ? tally.certificates : tally.without_certificate);
   Verdict& worst = tally.worst;
   if (verdict.worst_clearance < worst.worst_clearance) {
     worst.worst_clearance = verdict.worst_clearance;
@@ -166,13 +170,22 @@ std::vector<std::string> sentences(const VerifyOptions& options) {
       "What grasps and paths were made from is in the store, and their robot, scene and mesh files are the same.",
       "Grasps: rigid poses, joint limits, slack against the synergy box, contacts on both surfaces, that their "
       "wrenches positively span all forces and torques, the stored quality (non-negative least squares and descent, "
-      "no shared solver), and that each arm solution puts the palm where the grasp says.",
+      "no shared solver), the certificates of force closure in exact arithmetic (of the stored contacts and friction, "
+      "not of the world; a grasp without one is counted, not failed), and that each arm solution puts the palm where "
+      "the grasp says.",
       "Paths: start, pre-grasp, grasp and the palm's poses there, joint limits, and for the whole motion, by "
       "conservative "
       "advancement and not by samples, that all bodies keep " +
           millimetres(options.clearance) +
           " from each other; on the closing segment the grasp's own links may touch the object, at most " +
           millimetres(options.max_penetration) + " deep."};
+}
+
+/// Empty when there was no grasp.
+std::string certificate_sentence(const Tally& tally) {
+  if (tally.certificates + tally.without_certificate == 0) return "";
+  return "; " + std::to_string(tally.certificates) + " certificates of force closure hold, " +
+         std::to_string(tally.without_certificate) + " grasps have none";
 }
 
 /// What was found of all paths; empty when there was none.
@@ -211,6 +224,8 @@ int verify(const VerifyOptions& options, const Console& console) {
   result.update(
       {{"checked", checked},
        {"failed", tally.failed},
+       {"certificates", tally.certificates},
+       {"without_certificate", tally.without_certificate},
        {"clearance_m", options.clearance},
        {"max_penetration_m", options.max_penetration},
        {"worst_clearance_m", number(worst.worst_clearance)},
@@ -229,7 +244,7 @@ int verify(const VerifyOptions& options, const Console& console) {
   }
   console.say("checked " + std::to_string(checked) + " objects, " + std::to_string(tally.verdicts.size()) +
               " grasps and paths again: " + std::to_string(tally.failed.size()) + " failed" +
-              clearance_sentence(worst));
+              certificate_sentence(tally) + clearance_sentence(worst));
   console.document(result.dump());
   return tally.failed.empty() ? kDone : kNoAnswer;
 }

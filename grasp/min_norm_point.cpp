@@ -67,17 +67,22 @@ void minor_cycle(Small& s, Weights& weights) {
 
 }  // namespace
 
-MinNormPoint min_norm_point(const WrenchSpace& space) {
+MinNormPoint min_norm_point(const WrenchSpace& space, double relative_gap) {
   Small s(6, 1);
   s.col(0) = space.wrenches().col(0);
   if (space.norm() == WrenchNorm::linf) s.col(0) = space.support(-s.col(0).eval());
   Weights weights = Weights::Ones(1);
   Vector6d x = s.col(0);
+  MinNormPoint best{x, -std::numeric_limits<double>::infinity(), Vector6d::Zero(), s};
   for (int iteration = 0; iteration < kMaxIterations && s.cols() < 7; ++iteration) {
     const double length = x.norm();
     if (length <= kGap * space.scale()) break;
     const Vector6d p = space.support(-x);
-    if (length - x.dot(p) / length <= kGap * space.scale()) break;
+    if (const double least = x.dot(p) / length; least > best.least) {
+      best.least = least;
+      best.direction = -x / length;
+    }
+    if (length - best.least <= std::max(kGap * space.scale(), relative_gap * length)) break;
     if (((s.colwise() - p).colwise().squaredNorm().array() == 0.0).any()) break;
     s.conservativeResize(6, s.cols() + 1);
     s.rightCols<1>() = p;
@@ -88,7 +93,9 @@ MinNormPoint min_norm_point(const WrenchSpace& space) {
     if (!(next.norm() < length)) break;  // no progress in floating point: x is as near as can be told
     x = next;
   }
-  return {x, s};
+  best.point = x;
+  best.corral = s;
+  return best;
 }
 
 }  // namespace opponens::grasp

@@ -3,14 +3,35 @@
 #include "grasp/wrench_space.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include <Eigen/QR>
 #include <Eigen/SVD>
 
 #include "core/require.hpp"
+#include "grasp/friction_cone.hpp"
+#include "grasp/quality.hpp"
 
 namespace opponens::grasp {
+namespace {
+
+Vector6d curved_support(const std::vector<QuadraticContact>& contacts, WrenchNorm norm, const Vector6d& u) {
+  Vector6d result = Vector6d::Zero();
+  double best = -std::numeric_limits<double>::infinity();
+  for (const QuadraticContact& contact : contacts) {
+    const Vector6d w = contact.support(u);
+    const double value = u.dot(w);
+    if (norm == WrenchNorm::linf && value > 0.0) result += w;
+    if (norm == WrenchNorm::l1 && value > best) {
+      best = value;
+      result = w;
+    }
+  }
+  return result;
+}
+
+}  // namespace
 
 WrenchSpace::WrenchSpace(Matrix6Xd wrenches, int per_contact, WrenchNorm norm)
     : wrenches_(std::move(wrenches)), per_contact_(per_contact), norm_(norm), scale_(0.0) {
@@ -25,7 +46,20 @@ WrenchSpace::WrenchSpace(Matrix6Xd wrenches, int per_contact, WrenchNorm norm)
   }
 }
 
+WrenchSpace::WrenchSpace(const std::vector<Contact>& contacts, const QualityConvention& convention)
+    : WrenchSpace(contact_wrenches(contacts, convention), edges_per_contact(convention), convention.norm) {
+  if (convention.cone == FrictionCone::pyramid || convention.model == ContactModel::frictionless) return;
+  auto cones = std::make_shared<std::vector<QuadraticContact>>();
+  scale_ = 0.0;
+  for (const Contact& contact : contacts) {
+    const double length = cones->emplace_back(contact, convention).scale();
+    scale_ = norm_ == WrenchNorm::l1 ? std::max(scale_, length) : scale_ + length;
+  }
+  quadratic_ = std::move(cones);
+}
+
 Vector6d WrenchSpace::support(const Vector6d& u) const {
+  if (quadratic_) return curved_support(*quadratic_, norm_, u);
   if (norm_ == WrenchNorm::l1) {
     const double* w = wrenches_.data();
     Eigen::Index best = 0;
@@ -50,6 +84,7 @@ Vector6d WrenchSpace::support(const Vector6d& u) const {
 }
 
 Matrix6Xd WrenchSpace::points(std::size_t max_points) const {
+  if (quadratic_) return Matrix6Xd(6, 0);
   if (norm_ == WrenchNorm::l1) {
     return static_cast<std::size_t>(wrenches_.cols()) <= max_points ? wrenches_ : Matrix6Xd(6, 0);
   }

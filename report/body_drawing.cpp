@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <map>
 #include <memory>
 #include <variant>
 
@@ -21,18 +20,25 @@ int parent_of(const robot::RobotModel& model, int link) {
   return joint < 0 ? -1 : model.description().joints[static_cast<std::size_t>(joint)].parent;
 }
 
-/// The finger's number of each link: that of the tips and contact points on it or beyond it; -1 where there is none, or
-/// more than one (the palm).
+int paint_of(const robot::RobotModel& model, int link, int finger) {
+  bool hand = false;
+  for (int at = link; at >= 0; at = parent_of(model, at)) hand = hand || at == model.palm();
+  if (!hand) return paint_arm;
+  return finger < 0 ? paint_palm : paint_finger + finger % 5;
+}
+
+std::string finger_name(const robot::SurfacePoint& tip) { return tip.finger.empty() ? tip.name : tip.finger; }
+
+}  // namespace
+
 std::vector<int> finger_of_links(const robot::RobotModel& model) {
   constexpr int kNone = -1;
   constexpr int kSeveral = -2;
   std::vector<int> finger(model.links().size(), kNone);
-  std::map<std::string, int> numbers;
+  const std::vector<std::string> names = finger_names(model);
   for (const auto& tip : model.description().tips) {
-    numbers.try_emplace(tip.finger.empty() ? tip.name : tip.finger, static_cast<int>(numbers.size()));
-  }
-  for (const auto& tip : model.description().tips) {
-    const int number = numbers.at(tip.finger.empty() ? tip.name : tip.finger);
+    const auto found = std::find(names.begin(), names.end(), finger_name(tip));
+    const int number = static_cast<int>(found - names.begin());
     for (int link = tip.link; link >= 0; link = parent_of(model, link)) {
       int& mine = finger[static_cast<std::size_t>(link)];
       mine = mine == kNone || mine == number ? number : kSeveral;
@@ -46,14 +52,14 @@ std::vector<int> finger_of_links(const robot::RobotModel& model) {
   return finger;
 }
 
-int paint_of(const robot::RobotModel& model, int link, int finger) {
-  bool hand = false;
-  for (int at = link; at >= 0; at = parent_of(model, at)) hand = hand || at == model.palm();
-  if (!hand) return paint_arm;
-  return finger < 0 ? paint_palm : paint_finger + finger % 5;
+std::vector<std::string> finger_names(const robot::RobotModel& model) {
+  std::vector<std::string> names;
+  for (const auto& tip : model.description().tips) {
+    const std::string name = finger_name(tip);
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
+  return names;
 }
-
-}  // namespace
 
 std::vector<Paint> body_paints() {
   return {{176, 182, 190, true},                                                 // arm

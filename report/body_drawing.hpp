@@ -14,6 +14,13 @@
 
 namespace opponens::report {
 
+/// Names of the fingers, in the order of their tips: what a tip calls its finger, else the tip's own name.
+std::vector<std::string> finger_names(const robot::RobotModel& model);
+
+/// [links] index into finger_names: of the finger whose tip is on the link or beyond it; -1 where there is none, or
+/// more than one (the palm).
+std::vector<int> finger_of_links(const robot::RobotModel& model);
+
 /// Indices into body_paints(): robot grey, hand darker, a tint for each finger, object orange, obstacles light.
 enum BodyPaint { paint_arm, paint_palm, paint_finger, paint_object = paint_finger + 5, paint_obstacle, paint_support };
 

@@ -13,16 +13,13 @@
 namespace opponens::report {
 namespace {
 
-/// Directions of a hand in its root frame.
-struct HandAxes {
-  Eigen::Vector3d fingers;  ///< from the palm to the fingertips, at rest
-  Eigen::Vector3d palm;     ///< out of the palm
-  Eigen::Vector3d thumb;    ///< sideways, to the thumb
-};
-
 Eigen::Vector3d unit_or(const Eigen::Vector3d& v, const Eigen::Vector3d& fallback) {
   return v.norm() > 1e-9 ? Eigen::Vector3d(v.normalized()) : fallback;
 }
+
+constexpr double kCaption = 18.0;  // px under a posture
+
+}  // namespace
 
 HandAxes hand_axes(const robot::RobotModel& hand) {
   const auto X_RL = hand.link_poses(rest_configuration(hand));
@@ -46,19 +43,6 @@ HandAxes hand_axes(const robot::RobotModel& hand) {
   if (axes.thumb.dot(thumb) < 0.0) axes.thumb = -axes.thumb;
   return axes;
 }
-
-constexpr double kCaption = 18.0;  // px under a posture
-
-void draw_contact(Svg& svg, const View& view, const Contact& contact) {
-  constexpr double kArrow = 0.022;  // m
-  const Eigen::Vector2d tip = view.project(contact.p_OC);
-  const Eigen::Vector2d tail = view.project(contact.p_OC - kArrow * contact.n_O);
-  svg.line(tail.x(), tail.y(), tip.x(), tip.y(), "class=\"halo\"");
-  svg.line(tail.x(), tail.y(), tip.x(), tip.y(), "class=\"normal\"");
-  svg.circle(tip.x(), tip.y(), 3.4, "class=\"contact\"");
-}
-
-}  // namespace
 
 std::string draw_postures(const robot::RobotModel& hand, const RobotFacets& facets,
                           const std::vector<Posture>& postures, const std::string& title, double cell_width,
@@ -86,42 +70,6 @@ std::string draw_postures(const robot::RobotModel& hand, const RobotFacets& face
     svg.close_clip();
     svg.text(left + 0.5 * cell_width, height - 5.0, postures[i].caption, "class=\"tick\" text-anchor=\"middle\"");
   }
-  return svg.str();
-}
-
-std::string draw_grasp(const robot::RobotModel& hand, const RobotFacets& hand_facets, const robot::SceneBody& object,
-                       const Grasp& grasp, GraspSide side, const std::string& title, double width, double height) {
-  require(!object.geometry.empty(), "the object of a grasp has no geometry to draw");
-  auto paints = body_paints();
-  paints[paint_object].shows_through = false;
-  std::vector<Facet> body;
-  for (const auto& geometry : object.geometry)
-    append(body, facets(geometry, paint_object, {28, 1200}), Eigen::Isometry3d::Identity());
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-  const auto object_corners = corners_of(body);
-  for (const auto& p : object_corners) middle += p / static_cast<double>(object_corners.size());
-  const auto X_RL = hand.link_poses(grasp.q_grasp);
-  const Eigen::Isometry3d X_OR = grasp.X_OH * X_RL[static_cast<std::size_t>(hand.palm())].inverse();
-  append_robot(body, hand, hand_facets, X_OR, grasp.q_grasp);
-
-  const Eigen::Vector3d up = object.X_WB.linear().transpose() * Eigen::Vector3d::UnitZ();
-  Eigen::Vector3d ahead = middle - grasp.X_OH.translation();
-  ahead -= up * up.dot(ahead);
-  ahead = unit_or(ahead, up.unitOrthogonal());
-  const Eigen::Vector3d left = up.cross(ahead);
-  const Eigen::Vector3d toward = side == GraspSide::left ? Eigen::Vector3d(0.85 * left - 0.4 * ahead + 0.4 * up)
-                                                         : Eigen::Vector3d(-0.85 * left + 0.25 * ahead + 0.3 * up);
-  // Hand and the part of the object near it: a grasp of a long object would else be a small spot.
-  std::vector<Eigen::Vector3d> shown;
-  for (const auto& p : corners_of(body)) {
-    if ((p - grasp.X_OH.translation()).norm() < 0.3) shown.push_back(p);
-  }
-  if (shown.empty()) shown.push_back(grasp.X_OH.translation());
-  const View view = fit_view(toward, up, shown, width, height, 8.0);
-  Svg svg(width, height, title);
-  svg.rect(0.0, 0.0, width, height, "class=\"sky\"");
-  draw_facets(svg, view, std::move(body), paints);
-  for (const auto& contact : grasp.contacts) draw_contact(svg, view, contact);
   return svg.str();
 }
 

@@ -7,12 +7,18 @@
 
 #include <Eigen/Core>
 
-#include "core/grasp.hpp"
 #include "report/body_drawing.hpp"
 #include "robot/robot_model.hpp"
-#include "robot/scene.hpp"
 
 namespace opponens::report {
+
+/// Directions of a hand in its root frame, all unit.
+struct HandAxes {
+  Eigen::Vector3d fingers;  ///< from the palm to the fingertips, at rest
+  Eigen::Vector3d palm;     ///< out of the palm
+  Eigen::Vector3d thumb;    ///< sideways, to the thumb
+};
+HandAxes hand_axes(const robot::RobotModel& hand);
 
 /// A hand posture with the words under it.
 struct Posture {
@@ -24,13 +30,5 @@ struct Posture {
 std::string draw_postures(const robot::RobotModel& hand, const RobotFacets& facets,
                           const std::vector<Posture>& postures, const std::string& title, double cell_width,
                           double height);
-
-/// One of the two sides a grasp is drawn from: obliquely from behind the hand, its left or its right.
-enum class GraspSide { left, right };
-
-/// Hand and object in the object's frame, with the contact points and the normals that point into the object. The
-/// object hides nothing: fingers behind it show through. object must have geometry.
-std::string draw_grasp(const robot::RobotModel& hand, const RobotFacets& facets, const robot::SceneBody& object,
-                       const Grasp& grasp, GraspSide side, const std::string& title, double width, double height);
 
 }  // namespace opponens::report

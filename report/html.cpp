@@ -55,9 +55,14 @@ pre{background:var(--card);padding:10px 12px;border-radius:4px;overflow-x:auto;w
 figure{margin:12px 0;break-inside:avoid}figure svg{max-width:100%;height:auto;display:block}
 figcaption{color:var(--soft);font-size:13px;margin-top:4px;max-width:80ch}
 .row{display:flex;flex-wrap:wrap;gap:8px 24px}.row figure{flex:0 1 516px;min-width:0}
-.cards{display:grid;grid-template-columns:repeat(auto-fill,minmax(500px,1fr));gap:18px;margin:14px 0}
 .card{background:var(--card);border:1px solid var(--rule);border-radius:6px;padding:12px 14px;break-inside:avoid}
-.card h3{margin:0 0 6px}.card .pair{display:grid;grid-template-columns:1fr 1fr;gap:8px}.card figure{margin:4px 0}
+.card h3,.card h4{margin:0 0 6px}.card h4{font-size:15px}.card figure{margin:4px 0}
+.views{display:grid;grid-template-columns:repeat(3,1fr);gap:10px}
+.about{display:grid;grid-template-columns:3fr 2fr;gap:4px 28px;font-size:13.5px}
+.facts{display:grid;grid-template-columns:max-content 1fr;gap:1px 14px;margin:6px 0}.facts dt{color:var(--soft)}.facts dd{margin:0}
+p.touching{margin:6px 0 0}ul.touching{list-style:none;margin:0;padding:0}
+.dot{display:inline-block;width:10px;height:10px;border-radius:50%;margin-right:5px;border:1px solid #fff}
+.legend span{white-space:nowrap}.legend>span{margin-right:14px}
 section>.card{margin:12px 0}.card table{margin:6px 0 0;width:100%}
 .shots{display:grid;grid-template-columns:1fr 1fr;gap:8px 16px}.shots.small{grid-template-columns:repeat(4,1fr)}
 .good{color:var(--good);font-weight:600}.bad{color:var(--bad);font-weight:600}
@@ -66,10 +71,12 @@ svg text{fill:var(--fg);font-family:system-ui,"Segoe UI",Roboto,"Helvetica Neue"
 .tick{font-size:11px}.axis{font-size:12px}.grid{stroke:var(--rule);stroke-width:.6}
 .frame{fill:none;stroke:var(--soft);stroke-width:.8}.sky{fill:var(--sky)}
 .solid path{fill:currentColor;stroke:currentColor;stroke-width:7;stroke-linejoin:round}
-.halo{stroke:#fff;stroke-width:4}.normal{stroke:#c4007a;stroke-width:1.8}.contact{fill:#c4007a;stroke:#fff;stroke-width:1.2}
+.cone,.rim{stroke:currentColor;stroke-width:1;stroke-linejoin:round}.cone{fill:currentColor;fill-opacity:.18}.rim{fill:currentColor;fill-opacity:.14;stroke-width:.7}
+.axis-of-cone{stroke-width:1.6}
+svg .mark{fill:currentColor;font-size:11px;font-weight:700;text-anchor:middle;stroke:#fff;stroke-width:2.6;stroke-linejoin:round;paint-order:stroke}
 .trail{fill:none;stroke:#0050b0;stroke-width:1.8}.trail-halo{fill:none;stroke:#fff;stroke-width:3.6;stroke-opacity:.8}
 .trail-start{fill:#fff;stroke:#0050b0;stroke-width:1.6}.trail-end{fill:#0050b0}
-@media (max-width:700px){.cards,.shots,.shots.small{grid-template-columns:1fr}nav ol{columns:1}}
+@media (max-width:700px){.views,.about,.shots,.shots.small{grid-template-columns:1fr}nav ol{columns:1}}
 @media print{main{max-width:none;padding:0}.card,.shots figure{break-inside:avoid}h2,h3{break-after:avoid}}
 )";
 }

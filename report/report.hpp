@@ -110,12 +110,29 @@ struct GraspItem {
   std::optional<bool> verified;  ///< of `verify`, nullopt: not yet checked
 };
 
+/// Trials rejected for reasons that a person would do the same about.
+struct RejectionCause {
+  std::string name;
+  std::string advice;  ///< what may help; empty where nothing is known to
+  std::int64_t trials = 0;
+};
+
+/// What all searches of one group came to, or all of another kind: with free joints, or of imported grasps.
+struct GraspSearch {
+  std::string group;     ///< or what was searched: "free joints", "imported"
+  bool of_group = true;  ///< otherwise its grasps belong to the groups that they are nearest to
+  std::int64_t found = 0;
+  std::int64_t trials = 0;
+  std::map<std::string, std::int64_t> rejected;  ///< reason -> trials; "reason: bodies" names what was in the way
+  std::vector<RejectionCause> causes;            ///< the same trials by cause, the commonest first; empty: by reason
+};
+
 struct GraspPart {
-  std::string object;                            ///< body of the scene
-  std::vector<GraspItem> items;                  ///< best first
-  std::int64_t trials = 0;                       ///< of the search
-  std::map<std::string, std::int64_t> rejected;  ///< reason -> count
-  int max_pictures = 12;                         ///< items beyond are only in the table
+  std::string object;                 ///< body of the scene
+  std::string grouped_by;             ///< label that formed the groups: "family", ...; empty: unknown
+  std::vector<GraspItem> items;       ///< best first
+  std::vector<GraspSearch> searches;  ///< one per group, those that gave no grasp too, in the order of the page
+  int max_pictures = 5;               ///< of each group; further ones are only in the table
 };
 
 struct HumanLikeness {

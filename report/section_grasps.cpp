@@ -2,104 +2,111 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cstddef>
-#include <cstdint>
-#include <map>
-#include <utility>
+#include <optional>
 
-#include "core/require.hpp"
-#include "report/hand_drawing.hpp"
+#include "report/grasp_card.hpp"
+#include "report/grasp_drawing.hpp"
+#include "report/grasp_rejections.hpp"
 #include "report/sections.hpp"
 
 namespace opponens::report {
 namespace {
 
-std::string words(ContactModel model) {
-  switch (model) {
-    case ContactModel::frictionless:
-      return "frictionless";
-    case ContactModel::point_with_friction:
-      return "point with friction";
-    case ContactModel::soft_finger:
-      return "soft finger";
+/// The hand and the object's body, when the input has what a picture needs.
+std::optional<GraspStage> stage_of(const ReportInput& input) {
+  if (!input.hand || !input.scene) return std::nullopt;
+  for (const auto& body : input.scene->bodies) {
+    if (body.name == input.grasps->object && !body.geometry.empty()) return grasp_stage(*input.hand, body);
   }
-  return "";
+  return std::nullopt;
 }
 
-std::string words(ClosureState state) {
-  switch (state) {
-    case ClosureState::force_closure:
-      return "force closure";
-    case ClosureState::not_force_closure:
-      return "not force closure";
-    case ClosureState::rank_deficient:
-      return "rank deficient";
-  }
-  return "";
+/// Names of the groups: those searched, in their order, then others that have grasps.
+std::vector<std::string> group_names(const GraspPart& part) {
+  std::vector<std::string> names;
+  const auto add = [&](const std::string& name) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  };
+  for (const auto& search : part.searches) add(search.group);
+  for (const auto& item : part.items) add(item.grasp.group);
+  return names;
 }
 
-std::string convention_words(const QualityConvention& convention) {
-  std::string out = words(convention.model);
-  if (convention.model != ContactModel::frictionless) {
-    out += concat({", mu ", compact(convention.mu, 3), ", ", std::to_string(convention.edges), " edges"});
+std::vector<const GraspItem*> items_of(const GraspPart& part, const std::string& group) {
+  std::vector<const GraspItem*> items;
+  for (const auto& item : part.items) {
+    if (item.grasp.group == group) items.push_back(&item);
   }
-  out +=
-      concat({", unit ", convention.unit == ForceUnit::normal ? "normal force" : "force", ", ",
-              convention.norm == WrenchNorm::l1 ? "L1" : "L\u221E", ", torque / ", significant(convention.rho), " m"});
-  if (convention.model == ContactModel::soft_finger) {
-    out += concat({", torsion radius ", significant(convention.torsion_radius), " m"});
+  return items;
+}
+
+const GraspSearch* search_of(const GraspPart& part, const std::string& group) {
+  const auto found = std::find_if(part.searches.begin(), part.searches.end(),
+                                  [&](const GraspSearch& search) { return search.group == group; });
+  return found == part.searches.end() ? nullptr : &*found;
+}
+
+std::string titled(const GraspPart& part, const std::string& group) {
+  const GraspSearch* search = search_of(part, group);
+  if (search != nullptr && !search->of_group) return group;
+  return concat({part.grouped_by.empty() ? "group" : part.grouped_by, " ", group});
+}
+
+std::string grasps_of_object(const GraspPart& part, std::int64_t count) {
+  if (count == 0) return concat({"No grasp of ", part.object});
+  return concat({count == 1 ? std::string("One grasp of ") : concat({grouped(count), " grasps of "}), part.object});
+}
+
+/// Why a search found nothing, with what to try first.
+std::string reasons_of(const GraspSearch& search) {
+  const std::string why = rejection_words(search, 5);
+  const std::string advice = search.causes.empty() ? "" : search.causes.front().advice;
+  return concat({why.empty() ? "no reason is stored" : why, advice.empty() ? "." : ". To try first: ", advice,
+                 advice.empty() ? "" : "."});
+}
+
+/// What the search of a group came to, in a sentence: a group without a grasp says why.
+std::string outcome(const GraspPart& part, const std::string& group, std::size_t grasps) {
+  const auto count = static_cast<std::int64_t>(grasps);
+  const GraspSearch* search = search_of(part, group);
+  if (search == nullptr) return concat({grasps_of_object(part, count), "; no search of this group is stored."});
+  if (search->trials == 0) return concat({grasps_of_object(part, count), ": the search made no trial."});
+  const std::string trials = concat({" in ", grouped(search->trials), search->trials == 1 ? " trial" : " trials"});
+  if (!search->of_group && search->found > 0) {
+    return concat({grasps_of_object(part, search->found), trials, ", shown with the groups that they are nearest to."});
+  }
+  if (count == 0 || !search->of_group) {
+    return concat({grasps_of_object(part, 0), trials, ": ", reasons_of(*search)});
+  }
+  if (count == search->found) return concat({grasps_of_object(part, count), trials, "."});
+  return concat(
+      {grasps_of_object(part, count), "; the search of this group found ", grouped(search->found), trials, "."});
+}
+
+Markup group_section(const GraspPart& part, const GraspStage* stage, const std::string& group) {
+  const auto items = items_of(part, group);
+  const std::string title = titled(part, group);
+  Markup out = subheading(concat({"Grasps: ", title}));
+  out += paragraph(outcome(part, group, items.size()));
+  if (const GraspSearch* search = search_of(part, group)) {
+    out += rejection_chart(*search);
+    if (!search->rejected.empty()) out += details("all reasons, and what was in the way", rejection_table(*search));
+  }
+  const std::size_t shown = std::min(static_cast<std::size_t>(std::max(0, part.max_pictures)), items.size());
+  for (std::size_t i = 0; i < shown; ++i) {
+    out += grasp_card(stage, *items[i], concat({"Grasp ", std::to_string(i + 1), " of ", title}));
+  }
+  if (shown < items.size()) {
+    out += note(concat({"The best ", std::to_string(shown), " are shown; the others stand in the table below."}));
   }
   return out;
 }
 
-std::string optional_number(const std::optional<double>& value) {
-  return value ? significant(*value) : std::string("none");
-}
-
-std::string posture_words(const Grasp& grasp) { return grasp.synergy_grasp ? "along the synergies" : "free"; }
-
-/// The hand's configuration and the object's body, when the input has what a picture needs.
-const robot::SceneBody* drawable_object(const ReportInput& input) {
-  if (!input.hand || !input.scene) return nullptr;
-  for (const auto& body : input.scene->bodies) {
-    if (body.name == input.grasps->object && !body.geometry.empty()) return &body;
-  }
-  return nullptr;
-}
-
-Markup pictures(const ReportInput& input, const RobotFacets& facets, const robot::SceneBody& object,
-                const GraspItem& item, int number) {
-  const auto& hand = *input.hand;
-  require(item.grasp.q_grasp.size() == hand.dof(), [&] {
-    return concat({"grasp ", item.id, ": q_grasp has another number of joints than the hand"});
-  });
-  std::vector<Markup> pair;
-  for (const auto& [side, name] : {std::pair{GraspSide::left, "left"}, {GraspSide::right, "right"}}) {
-    const std::string title =
-        concat({"Grasp ", std::to_string(number), " of ", input.grasps->object, " from the ", name});
-    pair.push_back(figure(draw_grasp(hand, facets, object, item.grasp, side, title, 250.0, 240.0), ""));
-  }
-  return row_of(pair, "pair");
-}
-
-Markup numbers(const GraspItem& item) {
-  const auto& grasp = item.grasp;
-  const auto& quality = grasp.quality;
-  const std::string id_title = escape(item.id);
-  std::string html =
-      concat({"<p><code title=\"", id_title, "\">", escape(shortened(item.id)), "</code> \u00B7 group ",
-              escape(grasp.group), " \u00B7 ", badge(quality.force_closure(), words(quality.state)).html});
-  if (item.verified)
-    html += concat({" \u00B7 ", badge(*item.verified, *item.verified ? "verified" : "verification failed").html});
-  html += concat({"<br>\u03B5 ", optional_number(quality.epsilon), " \u00B7 l* ", optional_number(quality.min_weight),
-                  " \u00B7 slack ", significant(grasp.slack.norm()), " rad (", posture_words(grasp), ") \u00B7 ",
-                  std::to_string(grasp.contacts.size()), " contacts \u00B7 ",
-                  std::to_string(grasp.arm_solutions.size()), " arm solutions</p>\n"});
-  return {html};
-}
+Markup certified_words(const Grasp& grasp) { return grasp.certificate ? badge(true, "yes") : text("no"); }
 
 Markup grasp_table(const GraspPart& part) {
-  Table table("All grasps", {"grasp", "group", "state", "\u03B5", "l*", "slack (rad)", "posture", "contacts",
-                             "touching links", "arm solutions", "verified"});
+  Table table("All grasps, the best first", {"grasp", "group", "state", "\u03B5", "l*", "slack (rad)", "posture",
+                                             "contacts", "touching links", "arm solutions", "certified", "verified"});
   for (const auto& item : part.items) {
     const auto& grasp = item.grasp;
     std::vector<std::string> links;
@@ -110,50 +117,25 @@ Markup grasp_table(const GraspPart& part) {
                text(optional_number(grasp.quality.epsilon)), text(optional_number(grasp.quality.min_weight)),
                text(significant(grasp.slack.norm())), text(posture_words(grasp)),
                text(std::to_string(grasp.contacts.size())), text(std::to_string(links.size())),
-               text(std::to_string(grasp.arm_solutions.size())),
+               text(std::to_string(grasp.arm_solutions.size())), certified_words(grasp),
                item.verified ? badge(*item.verified, *item.verified ? "yes" : "no") : text("not checked")});
   }
   return table.str();
 }
 
-/// Trials rejected for one reason, with the pair of bodies that is named most often behind it.
-struct Rejection {
-  std::string reason;
-  std::int64_t trials = 0;
-  std::string pair;
-  std::int64_t of_pair = 0;
-};
-
-/// "reason: pair" counted by reason, the most frequent first.
-std::vector<Rejection> by_reason(const std::map<std::string, std::int64_t>& rejected) {
-  std::map<std::string, Rejection> grouped;
-  for (const auto& [words, count] : rejected) {
-    const std::size_t colon = words.find(": ");
-    auto& entry = grouped[words.substr(0, colon)];
-    entry.reason = words.substr(0, colon);
-    entry.trials += count;
-    if (colon == std::string::npos || count <= entry.of_pair) continue;
-    entry.pair = words.substr(colon + 2);
-    entry.of_pair = count;
-  }
-  std::vector<Rejection> sorted;
-  for (auto& [reason, entry] : grouped) sorted.push_back(std::move(entry));
-  std::stable_sort(sorted.begin(), sorted.end(),
-                   [](const Rejection& a, const Rejection& b) { return a.trials > b.trials; });
-  return sorted;
+/// How the pictures are read.
+Markup picture_key(const GraspStage& stage) {
+  Markup out = paragraph(
+      "Each grasp is drawn from the three sides that show most of its contacts. A dot is a contact point in the colour "
+      "of its finger, a ring one that the object or another link hides from this side; the arrow is the normal, into "
+      "the object, and the cone around it holds the forces that friction allows (half angle: the arc tangent of "
+      "\u03BC; "
+      "its length means nothing). Parts of the hand behind the object show through. Numbers are those of the lists.");
+  out += finger_legend(stage.hand);
+  return out;
 }
 
-Markup rejected_table(const GraspPart& part) {
-  if (part.rejected.empty()) return {};
-  Table table(concat({"Why trials were rejected, of ", grouped(part.trials)}), {"reason", "trials", "most often"});
-  for (const auto& one : by_reason(part.rejected)) {
-    table.row({text(one.reason), text(grouped(one.trials)),
-               text(one.pair.empty() ? "" : concat({one.pair, " (", grouped(one.of_pair), ")"}))});
-  }
-  return table.str();
-}
-
-/// One sentence per convention that occurs: a value is meaningless without it.
+/// One note per convention that occurs: a value is meaningless without it.
 Markup conventions(const GraspPart& part) {
   std::vector<std::string> seen;
   for (const auto& item : part.items) {
@@ -161,50 +143,36 @@ Markup conventions(const GraspPart& part) {
     if (std::find(seen.begin(), seen.end(), convention) == seen.end()) seen.push_back(convention);
   }
   Markup out;
-  for (const auto& convention : seen) {
-    out += note(concat({"Convention of \u03B5 and l*: ", convention,
-                        ". \u03B5 is the radius of the largest ball around the origin inside the wrench hull; l* is "
-                        "the largest weight that every wrench can keep while all balance each other (of at most 1 / "
-                        "their number). Both are positive for force closure."}));
-  }
+  for (const auto& convention : seen) out += note(concat({"Convention of \u03B5 and l*: ", convention, "."}));
+  if (seen.empty()) return out;
   out += note(
-      "Slack: how far fitting the fingers to the object took the posture away from the synergies. Up to the stated "
-      "bound "
-      "the grasp counts as one along the synergies, beyond it as free.");
+      "\u03B5 is the radius of the largest ball around the origin inside the wrench hull; l* is the largest weight "
+      "that "
+      "every edge wrench can keep while all balance each other (at most 1 / their number). Both are positive for force "
+      "closure. Slack: how far fitting the fingers to the object took the posture away from the synergies; up to the "
+      "search's bound the grasp counts as one along the synergies, beyond it as free. Certified: exact arithmetic "
+      "proves "
+      "force closure of the stored contacts, which says nothing of how well they describe the world.");
   return out;
 }
 
 }  // namespace
 
 Markup grasp_section(const ReportInput& input) {
-  if (!input.grasps || input.grasps->items.empty()) return note("No grasp has been found or searched yet.");
-  const auto& part = *input.grasps;
-  Markup out = paragraph(concat({std::to_string(part.items.size()), " grasps of ", part.object,
-                                 ". Magenta: contact points with the normals that point into the object. Parts of the "
-                                 "hand behind the object show through."}));
-  out += conventions(part);
-  const auto* object = drawable_object(input);
-  if (object != nullptr) {
-    const RobotFacets facets = robot_facets(*input.hand, 2400);
-    std::vector<Markup> cards;
-    const int shown = std::min(part.max_pictures, static_cast<int>(part.items.size()));
-    for (int i = 0; i < shown; ++i) {
-      const auto& item = part.items[static_cast<std::size_t>(i)];
-      Markup card{concat({"<div class=\"card\"><h3>Grasp ", std::to_string(i + 1), "</h3>\n"})};
-      card += pictures(input, facets, *object, item, i + 1);
-      card += numbers(item);
-      card.html += "</div>\n";
-      cards.push_back(std::move(card));
-    }
-    out += row_of(cards, "cards");
-    if (shown < static_cast<int>(part.items.size())) {
-      out += note(concat({"Pictures of the first ", std::to_string(shown), " only."}));
-    }
-  } else {
-    out += note("The hand's model or the object's shape was not given: no pictures.");
+  if (!input.grasps || (input.grasps->items.empty() && input.grasps->searches.empty())) {
+    return note("No grasp has been found or searched yet.");
   }
-  out += grasp_table(part);
-  out += rejected_table(part);
+  const auto& part = *input.grasps;
+  const auto groups = group_names(part);
+  const auto stage = stage_of(input);
+  Markup out = paragraph(concat({grasps_of_object(part, static_cast<std::int64_t>(part.items.size())), "."}));
+  if (!part.items.empty()) {
+    out += stage ? picture_key(*stage) : note("The hand's model or the object's shape was not given: no pictures.");
+  }
+  out += conventions(part);
+  for (const auto& group : groups) out += group_section(part, stage ? &*stage : nullptr, group);
+  if (!part.items.empty()) out += subheading("All grasps");
+  if (!part.items.empty()) out += grasp_table(part);
   return out;
 }
 

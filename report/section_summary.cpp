@@ -40,6 +40,7 @@ std::string synergy_words(const SynergyPart& part) {
 }
 
 std::string grasp_words(const GraspPart& part) {
+  if (part.items.empty()) return concat({"none of ", part.object, " found"});
   const auto closed = std::count_if(part.items.begin(), part.items.end(),
                                     [](const GraspItem& item) { return item.grasp.quality.force_closure(); });
   const auto along = std::count_if(part.items.begin(), part.items.end(),

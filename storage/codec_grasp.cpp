@@ -1,6 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The opponens authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
 #include <string_view>
 
 #include "core/require.hpp"
@@ -13,19 +16,25 @@ namespace {
 constexpr std::array<std::string_view, 3> kModels{"frictionless", "point_with_friction", "soft_finger"};
 constexpr std::array<std::string_view, 2> kUnits{"normal", "force"};
 constexpr std::array<std::string_view, 2> kNorms{"l1", "linf"};
+constexpr std::array<std::string_view, 2> kCones{"pyramid", "quadratic"};
 constexpr std::array<std::string_view, 3> kStates{"force_closure", "not_force_closure", "rank_deficient"};
+constexpr std::array<std::string_view, 2> kGraspOrigins{"searched", "imported"};
 
 void encode_quality(Record& record, const GraspQuality& quality) {
+  require(quality.state != ClosureState::below_incumbent, "encode: a quality that was given up is not stored");
   auto& fields = record.fields;
   const QualityConvention& convention = quality.convention;
   fields["quality.state"] = enum_text(kStates, quality.state);
   if (quality.epsilon) fields["quality.epsilon"] = *quality.epsilon;
   if (quality.min_weight) fields["quality.min_weight"] = *quality.min_weight;
   if (quality.volume) fields["quality.volume"] = *quality.volume;
+  if (quality.epsilon_gap != 0.0) fields["quality.epsilon_gap"] = quality.epsilon_gap;
   fields["quality.direction"] = Eigen::VectorXd(quality.direction);
   fields["convention.model"] = enum_text(kModels, convention.model);
   fields["convention.mu"] = convention.mu;
   fields["convention.edges"] = std::int64_t{convention.edges};
+  // Absent means pyramid, which is all there was before.
+  if (convention.cone != FrictionCone::pyramid) fields["convention.cone"] = enum_text(kCones, convention.cone);
   fields["convention.unit"] = enum_text(kUnits, convention.unit);
   fields["convention.norm"] = enum_text(kNorms, convention.norm);
   fields["convention.rho"] = convention.rho;
@@ -33,18 +42,21 @@ void encode_quality(Record& record, const GraspQuality& quality) {
   fields["convention.origin"] = Eigen::VectorXd(convention.origin);
 }
 
-GraspQuality decode_quality(const FieldReader& read) {
+GraspQuality decode_quality(const Record& record, const FieldReader& read) {
   GraspQuality quality;
   QualityConvention& convention = quality.convention;
   quality.state = read.enumerator<ClosureState>("quality.state", kStates);
   quality.epsilon = read.optional_number("quality.epsilon");
   quality.min_weight = read.optional_number("quality.min_weight");
   quality.volume = read.optional_number("quality.volume");
+  quality.epsilon_gap = read.optional_number("quality.epsilon_gap").value_or(0.0);
   read.expect(read.vector("quality.direction").size() == 6, "quality.direction", "6 values");
   quality.direction = read.vector("quality.direction");
   convention.model = read.enumerator<ContactModel>("convention.model", kModels);
   convention.mu = read.number("convention.mu");
   convention.edges = read.small_integer("convention.edges");
+  if (record.fields.contains("convention.cone"))
+    convention.cone = read.enumerator<FrictionCone>("convention.cone", kCones);
   convention.unit = read.enumerator<ForceUnit>("convention.unit", kUnits);
   convention.norm = read.enumerator<WrenchNorm>("convention.norm", kNorms);
   convention.rho = read.number("convention.rho");
@@ -52,6 +64,33 @@ GraspQuality decode_quality(const FieldReader& read) {
   read.expect(read.vector("convention.origin").size() == 3, "convention.origin", "3 values");
   convention.origin = read.vector("convention.origin");
   return quality;
+}
+
+void encode_robust(Record& record, const RobustQuality& robust) {
+  auto& fields = record.fields;
+  fields["robust.noise_position"] = robust.noise.position;
+  fields["robust.noise_angle"] = robust.noise.angle;
+  fields["robust.noise_friction"] = robust.noise.friction;
+  fields["robust.samples"] = std::int64_t{robust.noise.samples};
+  fields["robust.force_closure"] = robust.force_closure;
+  fields["robust.force_closure_low"] = robust.force_closure_low;
+  fields["robust.force_closure_high"] = robust.force_closure_high;
+  fields["robust.epsilon_mean"] = robust.epsilon_mean;
+  fields["robust.epsilon_low"] = robust.epsilon_low;
+}
+
+RobustQuality decode_robust(const FieldReader& read) {
+  RobustQuality robust;
+  robust.noise.position = read.number("robust.noise_position");
+  robust.noise.angle = read.number("robust.noise_angle");
+  robust.noise.friction = read.number("robust.noise_friction");
+  robust.noise.samples = read.small_integer("robust.samples");
+  robust.force_closure = read.number("robust.force_closure");
+  robust.force_closure_low = read.number("robust.force_closure_low");
+  robust.force_closure_high = read.number("robust.force_closure_high");
+  robust.epsilon_mean = read.number("robust.epsilon_mean");
+  robust.epsilon_low = read.number("robust.epsilon_low");
+  return robust;
 }
 
 void encode_contacts(Record& record, const std::vector<Contact>& contacts) {
@@ -87,6 +126,50 @@ std::vector<Contact> decode_contacts(const FieldReader& read) {
     contacts.push_back({links[static_cast<std::size_t>(i)], points.row(i), normals.row(i), friction[i]});
   }
   return contacts;
+}
+
+void encode_certificate(Record& record, const std::optional<Certificate>& certificate) {
+  if (!certificate) return;
+  const auto count = static_cast<Eigen::Index>(certificate->edges.size());
+  Eigen::VectorXd contacts(count);
+  Eigen::MatrixXd forces(count, 3);
+  Eigen::VectorXd torsions(count);
+  std::vector<std::string> coefficients;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const CertificateEdge& edge = certificate->edges[static_cast<std::size_t>(i)];
+    contacts[i] = edge.contact;
+    forces.row(i) = edge.force.transpose();
+    torsions[i] = edge.torsion;
+    coefficients.push_back(edge.coefficient);
+  }
+  record.fields["certificate.contact"] = contacts;
+  record.fields["certificate.force"] = forces;
+  record.fields["certificate.torsion"] = torsions;
+  record.fields["certificate.coefficient"] = coefficients;
+  if (certificate->epsilon_bound) record.fields["certificate.epsilon_bound"] = *certificate->epsilon_bound;
+}
+
+/// None where the field of coefficients is absent. Whether it holds is for verify to say, not for a reader.
+std::optional<Certificate> decode_certificate(const Record& record, const FieldReader& read) {
+  if (!record.fields.contains("certificate.coefficient")) return std::nullopt;
+  const std::vector<std::string>& coefficients = read.texts("certificate.coefficient");
+  const Eigen::VectorXd& contacts = read.vector("certificate.contact");
+  const Eigen::MatrixXd& forces = read.matrix("certificate.force");
+  const Eigen::VectorXd& torsions = read.vector("certificate.torsion");
+  const auto count = static_cast<Eigen::Index>(coefficients.size());
+  read.expect(contacts.size() == count, "certificate.contact", "one value per coefficient");
+  read.expect(forces.rows() == count && forces.cols() == 3, "certificate.force", "[coefficients x 3]");
+  read.expect(torsions.size() == count, "certificate.torsion", "one value per coefficient");
+  Certificate certificate;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const bool index =
+        contacts[i] >= 0.0 && contacts[i] <= std::numeric_limits<int>::max() && contacts[i] == std::floor(contacts[i]);
+    read.expect(index, "certificate.contact", "indices of contacts");
+    certificate.edges.push_back(
+        {static_cast<int>(contacts[i]), forces.row(i), torsions[i], coefficients[static_cast<std::size_t>(i)]});
+  }
+  certificate.epsilon_bound = read.optional_number("certificate.epsilon_bound");
+  return certificate;
 }
 
 void encode_arm_solutions(Record& record, const std::vector<ArmSolution>& solutions) {
@@ -137,6 +220,9 @@ Record encode(const Grasp& grasp, const Provenance& provenance) {
   fields["synergy_grasp"] = std::int64_t{grasp.synergy_grasp ? 1 : 0};
   encode_contacts(record, grasp.contacts);
   encode_quality(record, grasp.quality);
+  if (grasp.robust) encode_robust(record, *grasp.robust);
+  fields["origin"] = enum_text(kGraspOrigins, grasp.origin);
+  encode_certificate(record, grasp.certificate);
   encode_arm_solutions(record, grasp.arm_solutions);
   return record;
 }
@@ -153,7 +239,11 @@ Grasp decode_grasp(const Record& record) {
   grasp.X_OH_pregrasp = decode_pose(read, "X_OH_pregrasp");
   grasp.synergy_grasp = read.integer("synergy_grasp") != 0;
   grasp.contacts = decode_contacts(read);
-  grasp.quality = decode_quality(read);
+  grasp.quality = decode_quality(record, read);
+  if (record.fields.contains("robust.samples")) grasp.robust = decode_robust(read);
+  // Stores written before grasps could be imported do not say it.
+  if (record.fields.contains("origin")) grasp.origin = read.enumerator<GraspOrigin>("origin", kGraspOrigins);
+  grasp.certificate = decode_certificate(record, read);
   grasp.arm_solutions = decode_arm_solutions(read);
   return grasp;
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -11,10 +12,13 @@
 
 namespace opponens::verify {
 
-/// Contact wrenches [6 x N] = [force; torque / rho] made here, from the convention's definition: for each contact its
-/// `edges` forces n + mu (cos t_x + sin t_y), each checked to lie in the friction cone e.n > 0,
-/// (1 + mu^2) (e.n)^2 >= |e|^2 (to 1e-12), and scaled to length 1 where the unit is the force. Without friction: n
-/// alone. Soft fingers count as points with friction, which they are at least as strong as.
+/// Edges of a contact's friction cone [6 x edges] = [force; torque about the contact], made here from the convention's
+/// definition: forces n + mu (cos t_x + sin t_y); without friction n alone; for a soft finger 20 edges on the ellipsoid
+/// |f_t|^2 + (torque/r)^2 = mu^2 with r the torsion radius. Each is checked to lie in the cone
+/// (1 + mu^2) (f.n)^2 >= |f|^2 + (torque/r)^2 (to 1e-12), and scaled to a force of length 1 where that is the unit.
+Eigen::Matrix<double, 6, Eigen::Dynamic> contact_edges(const Contact& contact, const QualityConvention& convention);
+
+/// Wrenches [6 x N] = [force; torque / rho] of the edges of all contacts, torque about the convention's origin.
 Eigen::Matrix<double, 6, Eigen::Dynamic> contact_wrenches(const std::vector<Contact>& contacts,
                                                           const QualityConvention& convention);
 
@@ -25,8 +29,7 @@ struct PositiveSpan {
   int wrenches = 0;
 };
 
-/// Force closure of contacts by non-negative least squares. For soft fingers "spans" is certain, and a grasp that
-/// closes by torsion alone is refused.
+/// Force closure of contacts by non-negative least squares.
 PositiveSpan positive_span(const std::vector<Contact>& contacts, const QualityConvention& convention);
 
 /// Residual of W a = 0, 1'a = 1, a >= l by non-negative least squares (W scaled to unit length of its longest column):
@@ -39,9 +42,10 @@ double balance_residual(const Eigen::Matrix<double, 6, Eigen::Dynamic>& wrenches
 double epsilon_bound(const Eigen::Matrix<double, 6, Eigen::Dynamic>& wrenches, int per_contact, WrenchNorm norm,
                      const Eigen::Matrix<double, 6, 1>& hint);
 
-/// Re-checks a stored quality: force closure (positive_span); a positive l* that is attained and, to 0.1 %, cannot be
-/// raised (balance_residual); a positive epsilon within 1 % of epsilon_bound and not above it. epsilon and l* of soft
-/// fingers are asked to be positive only. Returns the number of wrenches.
-int check_quality(const std::vector<Contact>& contacts, const GraspQuality& quality, Verdict& verdict);
+/// Re-checks a stored quality: force closure, by positive_span and by the certificate where there is one; a positive l*
+/// that is attained and, to 0.1 %, cannot be raised (balance_residual); a positive epsilon within 1 % of epsilon_bound
+/// and not above it, nor above the certificate's bound. Returns the number of wrenches.
+int check_quality(const std::vector<Contact>& contacts, const GraspQuality& quality,
+                  const std::optional<Certificate>& certificate, Verdict& verdict);
 
 }  // namespace opponens::verify

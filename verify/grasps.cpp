@@ -165,7 +165,7 @@ Verdict check_grasp(const Grasp& grasp, const GraspContext& context, const Grasp
   if (!verdict.ok) return verdict;  // surfaces and wrenches of a grasp that is not itself would only add noise
   if (!check_contact_form(grasp, settings.tolerance, verdict)) return verdict;
   check_contacts(grasp, context, settings, verdict);
-  verdict.checked = check_quality(grasp.contacts, grasp.quality, verdict);
+  verdict.checked = check_quality(grasp.contacts, grasp.quality, grasp.certificate, verdict);
   return verdict;
 }
 

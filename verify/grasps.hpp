@@ -33,7 +33,8 @@ struct GraspContext {
 /// Re-checks a stored grasp without the code that found it: orthonormal poses; joint limits of grasp and pre-grasp;
 /// slack = q_grasp - scale .* (center + axes c), coefficients inside the box and, for a synergy grasp, the slack's
 /// bound; contacts with unit normals on the surfaces of object and link, normals along the object's; and force closure,
-/// epsilon and l* of the contact model (check_quality). No collision: see paths.hpp.
+/// certificate, epsilon and l* of the contact model (check_quality). A grasp without a certificate passes: stores of
+/// before have none. No collision: see paths.hpp.
 Verdict check_grasp(const Grasp& grasp, const GraspContext& context, const GraspCheckSettings& settings = {});
 
 /// Whether each stored arm solution lies in the limits and puts the palm at X_OH_pregrasp and at X_OH, to `tolerance`

@@ -14,6 +14,7 @@ namespace opponens::verify {
 struct Verdict {
   bool ok = true;
   std::vector<std::string> reasons;  ///< one sentence each, with the values
+  bool certified = false;            ///< grasps: a certificate of force closure is stored, and it holds
   // Of paths:
   double worst_clearance = std::numeric_limits<double>::infinity();   ///< m, least distance found; 0: collision
   double proven_clearance = std::numeric_limits<double>::infinity();  ///< m, nothing comes nearer anywhere on the path

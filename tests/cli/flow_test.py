@@ -79,7 +79,7 @@ class Pipeline(unittest.TestCase):
         for one in grasp["grasps"]:
             self.assertTrue(one["force_closure"])
             self.assertGreater(one["epsilon"], 0.0)
-            self.assertIsNone(one["certified"])
+            self.assertIn(one["certified"], (True, False))
             self.assertEqual(len(one["X_OH"]), 16)
             self.assertEqual(set(one["joints"]), set(one["pregrasp"]))
             for contact in one["contacts"]:
@@ -97,6 +97,9 @@ class Pipeline(unittest.TestCase):
         verify = self.documents["verify"]
         self.assertEqual(verify["failed"], [])
         self.assertGreater(verify["checked"], 4)
+        certified = sum(one["certified"] for one in grasp["grasps"])
+        self.assertEqual(verify["certificates"], certified)
+        self.assertEqual(verify["without_certificate"], len(grasp["grasps"]) - certified)
         self.assertGreater(verify["worst_clearance_m"], 0.0)
         self.assertIn(" and ", verify["worst_pair"])
         self.assertRegex(verify["worst_place"], r"waypoint.* of path [0-9a-f]{12}$")

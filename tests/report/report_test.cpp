@@ -141,7 +141,9 @@ TEST(Report, HostileTextStaysText) {
   input.grasps->items[0].id = evil;
   input.grasps->items[0].grasp.group = evil;
   input.grasps->items[0].grasp.contacts[0].link = evil;
-  input.grasps->rejected[evil] = 3;
+  input.grasps->grouped_by = evil;
+  input.grasps->searches[0].group = evil;
+  input.grasps->searches[0].rejected[evil] = 3;
   input.scene->bodies[0].name = evil;
   input.grasps->object = evil;
   input.path->id = evil;

@@ -195,8 +195,17 @@ GraspPart grasps(const robot::RobotModel& hand, Rng& rng) {
     part.items.push_back(
         {fake_id(rng), grasp(hand, std::to_string(1 + i % 4), -0.8 + 0.45 * i, 0.75 + 0.05 * i, rng), true});
   }
-  part.trials = 1240;
-  part.rejected = {{"arm collision", 212}, {"hand collision", 401}, {"no IK", 388}, {"not force closure", 234}};
+  part.grouped_by = "family";
+  part.searches.resize(4);
+  for (std::size_t i = 0; i < 4; ++i) {
+    part.searches[i].group = std::to_string(i + 1);
+    part.searches[i].found = i == 0 ? 2 : 1;
+    part.searches[i].trials = 320;
+    part.searches[i].rejected = {{"arm collision: link_3.0-shelf", 52}, {"hand collision", 111}, {"no IK", 98}};
+    part.searches[i].rejected["not force closure"] = 59 - part.searches[i].found;
+  }
+  part.searches[1].causes = {{"collision with shelf", "move shelf away from bottle", 163},
+                             {"out of the arm's reach", "move the object", 156}};
   return part;
 }
 

@@ -53,7 +53,11 @@ Grasp grasp() {
   value.quality.direction << 1, 2, 3, 4, 5, 6;
   value.quality.convention = {ContactModel::soft_finger, 0.7,  12,    ForceUnit::force,
                               WrenchNorm::linf,          0.08, 0.003, Eigen::Vector3d(0, 0, 1)};
+  value.certificate =
+      Certificate{{{1, {0.1, 0.2, 0.3}, 0.25, "123456789012345678901234567890"}, {0, {-1, 0, 0}, 0.0, "7"}}, 0.125};
   value.synergy_grasp = false;
+  value.robust = RobustQuality{{0.004, 0.03, 0.1, 250}, 0.9, 0.86, 0.93, 0.05, 0.01};
+  value.origin = GraspOrigin::imported;
   value.arm_solutions = {{Eigen::VectorXd::Random(6), Eigen::VectorXd::Random(6)},
                          {Eigen::VectorXd::Random(6), Eigen::VectorXd::Random(6)}};
   return value;
@@ -136,10 +140,63 @@ TEST(Codec, Grasp) {
   EXPECT_EQ(back.quality.convention.torsion_radius, 0.003);
   EXPECT_EQ(back.quality.convention.mu, 0.7);
   EXPECT_EQ(back.quality.convention.origin, Eigen::Vector3d(0, 0, 1));
+  ASSERT_TRUE(back.certificate.has_value());
+  ASSERT_EQ(back.certificate->edges.size(), 2U);
+  EXPECT_EQ(back.certificate->edges[0].contact, 1);
+  EXPECT_EQ(back.certificate->edges[0].force, Eigen::Vector3d(0.1, 0.2, 0.3));
+  EXPECT_EQ(back.certificate->edges[0].torsion, 0.25);
+  EXPECT_EQ(back.certificate->edges[0].coefficient, "123456789012345678901234567890");
+  EXPECT_EQ(back.certificate->edges[1].coefficient, "7");
+  EXPECT_EQ(back.certificate->epsilon_bound, 0.125);
   EXPECT_FALSE(back.synergy_grasp);
+  ASSERT_TRUE(back.robust);
+  EXPECT_EQ(back.robust->noise.position, 0.004);
+  EXPECT_EQ(back.robust->noise.angle, 0.03);
+  EXPECT_EQ(back.robust->noise.friction, 0.1);
+  EXPECT_EQ(back.robust->noise.samples, 250);
+  EXPECT_EQ(back.robust->force_closure, 0.9);
+  EXPECT_EQ(back.robust->force_closure_low, 0.86);
+  EXPECT_EQ(back.robust->force_closure_high, 0.93);
+  EXPECT_EQ(back.robust->epsilon_mean, 0.05);
+  EXPECT_EQ(back.robust->epsilon_low, 0.01);
+  EXPECT_EQ(back.origin, GraspOrigin::imported);
   ASSERT_EQ(back.arm_solutions.size(), 2U);
   EXPECT_EQ(back.arm_solutions[1].q_grasp, value.arm_solutions[1].q_grasp);
   EXPECT_EQ(back.arm_solutions[1].q_pregrasp, value.arm_solutions[1].q_pregrasp);
+}
+
+TEST(Codec, GraspsStoredBeforeTheyHadAnOriginWereSearched) {
+  Record record = encode(Grasp{}, kProvenance);
+  EXPECT_EQ(record.fields.erase("origin"), 1U);
+  const Grasp grasp = decode_grasp(record);
+  EXPECT_EQ(grasp.origin, GraspOrigin::searched);
+  EXPECT_FALSE(grasp.robust);
+}
+
+TEST(Codec, GraspWithoutACertificateAsInStoresOfBefore) {
+  Grasp value = grasp();
+  value.certificate.reset();
+  const Record record = encode(value, kProvenance);
+  for (const auto& [name, field] : record.fields) EXPECT_FALSE(name.starts_with("certificate")) << name;
+  EXPECT_FALSE(through_a_store(value, decode_grasp).certificate.has_value());
+  value.certificate = Certificate{};
+  EXPECT_TRUE(through_a_store(value, decode_grasp).certificate->edges.empty());
+}
+
+TEST(Codec, DecodeRefusesAMisshapenCertificate) {
+  const auto refusal = [](const std::string& field, const Field& wrong) {
+    Record record = encode(grasp(), kProvenance);
+    record.fields[field] = wrong;
+    return message_of<StorageError>([&] { decode_grasp(record); });
+  };
+  EXPECT_TRUE(contains(refusal("certificate.contact", Eigen::VectorXd(Eigen::Vector2d(0, 0.5))),
+                       {"'certificate.contact'", "indices of contacts"}));
+  EXPECT_TRUE(contains(refusal("certificate.contact", Eigen::VectorXd(Eigen::Vector2d(-1, 0))), {"indices"}));
+  EXPECT_TRUE(contains(refusal("certificate.contact", Eigen::VectorXd(Eigen::Vector2d(1e300, 0))), {"indices"}));
+  EXPECT_TRUE(contains(refusal("certificate.contact", Eigen::VectorXd(Eigen::Vector3d(0, 0, 0))), {"one value"}));
+  EXPECT_TRUE(contains(refusal("certificate.force", Eigen::MatrixXd(2, 2)), {"'certificate.force'", "x 3]"}));
+  EXPECT_TRUE(contains(refusal("certificate.torsion", Eigen::VectorXd(1)), {"'certificate.torsion'"}));
+  EXPECT_TRUE(contains(refusal("certificate.coefficient", 1.0), {"'certificate.coefficient'", "list of texts"}));
 }
 
 TEST(Codec, EmptyGraspAndUnsolvedPath) {

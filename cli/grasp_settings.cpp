@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/grasp_settings.hpp"
+
+#include <algorithm>
+
+#include "core/require.hpp"
+
+namespace opponens::cli {
+
+grasp::SearchSettings search_settings(const GraspOptions& options, int threads) {
+  grasp::SearchSettings settings;
+  settings.count = options.count;
+  settings.max_trials = options.trials.value_or(options.max_trials);
+  settings.min_trials = options.trials.value_or(options.min_trials);
+  settings.mu = options.mu;
+  settings.edges = options.edges;
+  settings.max_penetration = options.max_penetration;
+  settings.clearance_pregrasp = options.clearance;
+  settings.slack_bound = options.slack_bound;
+  settings.threads = threads;
+  return settings;
+}
+
+Json settings_json(const GraspOptions& options) {
+  const grasp::SearchSettings settings = search_settings(options, 1);
+  return {{"count", settings.count},
+          {"max_trials", settings.max_trials},
+          {"min_trials", settings.min_trials},
+          {"mu", settings.mu},
+          {"edges", settings.edges},
+          {"max_penetration", settings.max_penetration},
+          {"clearance", settings.clearance_pregrasp},
+          {"slack_bound", settings.slack_bound},
+          {"free_joints", options.free_joints},
+          {"noise",
+           {{"position", options.noise.position},
+            {"angle", options.noise.angle},
+            {"friction", options.noise.friction},
+            {"samples", options.noise.samples}}}};
+}
+
+std::vector<SynergyGroup> chosen_groups(const SynergySet& set, const GraspOptions& options) {
+  if (set.grasp.empty()) {
+    throw InputError("the newest synergies have no groups of the grasp phase; run: opponens analyze --phase both");
+  }
+  std::string known;
+  for (const auto& group : set.grasp) known += (known.empty() ? "" : ", ") + group.name;
+  std::vector<SynergyGroup> groups;
+  for (const auto& group : set.grasp) {
+    if (options.group == "all" || group.name == options.group) groups.push_back(group);
+  }
+  if (groups.empty()) throw InputError("--group " + options.group + ": no such group; there are: " + known);
+  if (options.free_joints) return groups;  // they only name what is found
+  const auto still = [](const SynergyGroup& group) { return group.box.half_width.size() == 0; };
+  const auto without = std::find_if(groups.begin(), groups.end(), still);
+  if (without != groups.end()) {
+    throw InputError("group " + without->name +
+                     " has no synergies (dimension 0), so there is nothing to search along; choose another --group, "
+                     "give it recordings that move, or use --free-joints");
+  }
+  return groups;
+}
+
+SynergyGroup free_joints_group(const robot::RobotModel& hand) {
+  SynergyGroup group;
+  group.name = "free joints";
+  group.phase = "grasp";
+  group.dof_effective = hand.dof();
+  group.box.center = 0.5 * (hand.lower() + hand.upper());
+  group.box.half_width = 0.5 * (hand.upper() - hand.lower());
+  group.box.axes = Eigen::MatrixXd::Identity(hand.dof(), hand.dof());
+  group.box.scale = Eigen::VectorXd::Ones(hand.dof());
+  return group;
+}
+
+}  // namespace opponens::cli

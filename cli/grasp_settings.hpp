@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "cli/commands.hpp"
+#include "cli/json.hpp"
+#include "core/synergies.hpp"
+#include "grasp/grasp_search.hpp"
+#include "robot/robot_model.hpp"
+
+namespace opponens::cli {
+
+/// The options of `grasp` as the search's settings.
+grasp::SearchSettings search_settings(const GraspOptions& options, int threads);
+
+/// The same as they are recorded with what they made.
+Json settings_json(const GraspOptions& options);
+
+/// The groups that --group names. Throws InputError when there is none, or one without synergies is to be searched.
+std::vector<SynergyGroup> chosen_groups(const SynergySet& set, const GraspOptions& options);
+
+/// A group named "free joints" whose box is all that the joint limits allow, one axis per joint.
+SynergyGroup free_joints_group(const robot::RobotModel& hand);
+
+}  // namespace opponens::cli

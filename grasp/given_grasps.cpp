@@ -1,0 +1,122 @@
+// SPDX-FileCopyrightText: 2026 The opponens authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grasp/given_grasps.hpp"
+
+#include <cstdio>
+#include <limits>
+#include <utility>
+
+#include "analysis/synergy_box.hpp"
+#include "core/require.hpp"
+#include "grasp/grasp_check.hpp"
+#include "grasp/grasp_target.hpp"
+#include "grasp/hand_surface.hpp"
+#include "grasp/quality.hpp"
+
+namespace opponens::grasp {
+namespace {
+
+constexpr double kLimitTolerance = 1e-6;  // rad: postures come with eight digits
+
+std::string beyond_limits(const robot::RobotModel& hand, const Eigen::VectorXd& q) {
+  for (Eigen::Index j = 0; j < q.size(); ++j) {
+    if (q[j] >= hand.lower()[j] - kLimitTolerance && q[j] <= hand.upper()[j] + kLimitTolerance) continue;
+    char text[160];
+    std::snprintf(text, sizeof text, "outside the joint limits: %s at %.4f rad, limits %.4f to %.4f",
+                  hand.joint_names()[static_cast<std::size_t>(j)].c_str(), q[j], hand.lower()[j], hand.upper()[j]);
+    return text;
+  }
+  return {};
+}
+
+/// What all postures share, made once.
+struct Checks {
+  const GivenWorld& world;
+  GraspTarget target;
+  HandSurface surface;
+  HandCheckers checkers;
+};
+
+QualityConvention given_convention(const Checks& checks) {
+  QualityConvention convention;
+  convention.mu = checks.world.settings.mu;
+  convention.edges = checks.world.settings.edges;
+  convention.rho = checks.target.rho;
+  convention.origin = checks.target.center_of_mass;
+  return convention;
+}
+
+GivenGrasp check_one(const Checks& checks, const HandPose& given, const Accept& accept) {
+  const GivenWorld& world = checks.world;
+  const SearchSettings& settings = world.settings;
+  if (std::string reason = beyond_limits(world.hand, given.q); !reason.empty()) return {std::nullopt, reason};
+  const HandPose posture{given.X_OH, world.hand.clip(given.q)};
+  const SynergyGroup& group = world.groups[nearest_group(world.groups, posture.q)];
+  const Eigen::VectorXd direction = closing_direction(group.box, world.pre_grasp);
+  const ClosingScene scene{world.hand, checks.surface, checks.target, group.box, direction};
+  Grasp grasp;
+  grasp.contacts = find_contacts(scene, posture, settings.contact_tolerance, settings.mu);
+  if (grasp.contacts.size() < 3) return {std::nullopt, "fewer than three contacts"};
+  grasp.quality = evaluate(grasp.contacts, given_convention(checks));
+  if (!grasp.quality.force_closure()) return {std::nullopt, "not force closure"};
+  if (!grasp.quality.epsilon) return {std::nullopt, "epsilon did not converge"};
+  GraspLimits limits{std::vector<bool>(world.hand.links().size(), false), settings.max_penetration,
+                     settings.clearance_pregrasp};
+  for (const Contact& contact : grasp.contacts) limits.touching[world.hand.link_index(contact.link)] = true;
+  if (std::string fault = posture_fault(scene, checks.checkers, posture, limits); !fault.empty()) {
+    return {std::nullopt, fault};
+  }
+  const auto pregrasp = find_pregrasp(scene, checks.checkers, world.pre_grasp, posture, limits);
+  if (!pregrasp) return {std::nullopt, "no clear pre-grasp"};
+  grasp.q_grasp = posture.q;
+  grasp.X_OH = posture.X_OH;
+  grasp.q_pregrasp = pregrasp->q;
+  grasp.X_OH_pregrasp = pregrasp->X_OH;
+  grasp.origin = GraspOrigin::imported;
+  describe_along(group, settings.slack_bound, grasp);
+  std::string reason = accept ? accept(grasp) : std::string();
+  if (!reason.empty()) return {std::nullopt, std::move(reason)};
+  return {std::move(grasp), {}};
+}
+
+}  // namespace
+
+void describe_along(const SynergyGroup& group, double slack_bound, Grasp& grasp) {
+  const SynergyBox& box = group.box;
+  grasp.group = group.name;
+  grasp.coefficients = analysis::coordinates(box, grasp.q_grasp).cwiseMax(-box.half_width).cwiseMin(box.half_width);
+  grasp.slack = grasp.q_grasp - analysis::configuration(box, grasp.coefficients);
+  grasp.synergy_grasp = grasp.slack.norm() <= slack_bound;
+}
+
+std::size_t nearest_group(const std::vector<SynergyGroup>& groups, const Eigen::VectorXd& q) {
+  require(!groups.empty(), "nearest_group: there are no groups");
+  std::size_t nearest = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    const double slack = (q - analysis::project(groups[i].box, q)).norm();
+    if (slack >= least) continue;
+    least = slack;
+    nearest = i;
+  }
+  return nearest;
+}
+
+std::vector<GivenGrasp> check_given(const GivenWorld& world, const std::vector<HandPose>& postures,
+                                    const Accept& accept) {
+  validate(world.settings);
+  for (const HandPose& posture : postures) {
+    require(posture.q.size() == world.hand.dof() && posture.q.allFinite() && posture.X_OH.matrix().allFinite(),
+            "check_given: a posture is not finite, or not of this hand's joints");
+  }
+  const SynergyBox& first = world.groups.at(0).box;
+  const Eigen::VectorXd mean = world.hand.clip(first.scale.cwiseProduct(first.center));
+  const Checks checks{world, make_target(world.scene, world.object, world.settings.threads),
+                      hand_surface(world.hand, mean), hand_checkers(world.hand, world.scene, world.object)};
+  std::vector<GivenGrasp> results;
+  results.reserve(postures.size());
+  for (const HandPose& posture : postures) results.push_back(check_one(checks, posture, accept));
+  return results;
+}
+
+}  // namespace opponens::grasp
