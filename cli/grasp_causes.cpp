@@ -67,12 +67,15 @@ Meaning meaning_of(const std::string& reason) {
 
 Cause cause_of(const std::string& reason, const robot::Scene& scene, const std::string& object) {
   const std::size_t colon = reason.find(": ");
-  const bool collision = colon != std::string::npos && reason.find("collision") < colon;
-  if (!collision) {
+  const bool named = colon != std::string::npos;
+  const bool near = named && reason.rfind("too near to an obstacle", 0) == 0;
+  const bool collision = named && reason.find("collision") < colon;
+  if (!collision && !near) {
     const Meaning meaning = meaning_of(reason);
     return {std::string(meaning.cause), std::string(meaning.advice), 0, {}};
   }
-  const std::string body = body_of(reason.substr(colon + 2), scene);
+  const std::string what = reason.substr(colon + 2);
+  const std::string body = near ? what : body_of(what, scene);
   if (body.empty()) return {"the robot meets itself", "", 0, {}};
   if (body == object) return {"arm or hand runs into the object", "try more trials or a larger --clearance", 0, {}};
   return {"collision with " + body, "move " + body + " away from " + object, 0, {}};

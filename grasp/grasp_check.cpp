@@ -62,6 +62,25 @@ double least_distance(const PointTree& points, const LinkShape& shape, const Eig
   });
 }
 
+/// Name of the obstacle that the hand's points come nearest to.
+std::string nearest_obstacle(const ClosingScene& scene, const HandPose& pose) {
+  const auto X_HL = scene.hand.link_poses(pose.q);
+  double least = std::numeric_limits<double>::infinity();
+  std::string name;
+  for (const Obstacle& obstacle : scene.target.obstacles) {
+    for (std::size_t link = 0; link < X_HL.size(); ++link) {
+      const Eigen::Isometry3d X_BL = obstacle.X_BO * pose.X_OH * X_HL[link];
+      for (const Eigen::Vector3d& p_L : scene.surface.medium[link]) {
+        const double distance = obstacle.distance.query(X_BL * p_L, kObstacleClearance).value;
+        if (distance >= least) continue;
+        least = distance;
+        name = obstacle.name;
+      }
+    }
+  }
+  return name;
+}
+
 }  // namespace
 
 std::vector<double> link_object_distances(const ClosingScene& scene, const HandPose& pose, double horizon) {
@@ -137,8 +156,14 @@ HandCheckers hand_checkers(const robot::RobotModel& hand, const robot::Scene& sc
 
 std::string posture_fault(const ClosingScene& scene, const HandCheckers& checkers, const HandPose& pose,
                           const GraspLimits& limits) {
-  if (obstacle_distance(scene, pose, kObstacleClearance) < kObstacleClearance) return "too near to an obstacle";
-  if (!checkers.touching.free(scene.target.X_WO * pose.X_OH, pose.q)) return "hand in collision";
+  if (obstacle_distance(scene, pose, kObstacleClearance) < kObstacleClearance) {
+    return "too near to an obstacle: " + nearest_obstacle(scene, pose);
+  }
+  const Eigen::Isometry3d X_WH = scene.target.X_WO * pose.X_OH;
+  if (!checkers.touching.free(X_WH, pose.q)) {
+    const std::vector<robot::BodyPair> pairs = checkers.touching.colliding_pairs(X_WH, pose.q);
+    return pairs.empty() ? "hand in collision" : "hand in collision: " + pairs[0].first + "-" + pairs[0].second;
+  }
   if (self_distance(scene, pose, kSelfClearance) < kSelfClearance) return "fingers touch each other";
   if (!keeps(link_object_distances(scene, pose, kOtherClearance), limits)) return "penetrates the object";
   if (!keeps(object_link_distances(scene, pose, kOtherClearance), limits)) return "penetrates the object";

@@ -40,7 +40,8 @@ struct GraspLimits {
 
 /// Why a posture is no grasp, or an empty string: penetration beyond the bound, a link without a contact nearer than
 /// 0.5 mm to the object, support or obstacle nearer than 1 mm, fingers nearer than 0.5 mm to each other, or a collision
-/// by the collision truth.
+/// by the collision truth. Obstacles and colliding pairs are named: "too near to an obstacle: NAME", "hand in
+/// collision: A-B".
 std::string posture_fault(const ClosingScene& scene, const HandCheckers& checkers, const HandPose& pose,
                           const GraspLimits& limits);
 

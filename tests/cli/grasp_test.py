@@ -233,7 +233,7 @@ class Import(Grasp):
         one = self.frogger(self.plain["grasps"][:1])
         bad(["joint thumb", "joint_0.0"], {**one, "hand_joint_order": ["thumb"] + one["hand_joint_order"][1:]})
         bad(["15 numbers for 16 joints"], {**one, "grasps": [{**one["grasps"][0], "hand_q": [0.0] * 15}]})
-        bad(["base 'hand'", "no link"], {**one, "handbase_frame": "hand of x.urdf"})
+        bad(["base is 'hand'", "no link"], {**one, "handbase_frame": "hand of x.urdf"})
         bad(["link_3.0", "moves against the palm"], {**one, "handbase_frame": "link_3.0"})
         bad(["handbase_frame"], {key: value for key, value in one.items() if key != "handbase_frame"})
         skew = [[2, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
@@ -250,7 +250,7 @@ class Import(Grasp):
 
 class Answers(Grasp):
     def test_wrong_unit(self):
-        for size, words in [([60.0, 100.0, 80.0], ["100 m", "unit: mm"]), ([6e-5, 1e-4, 8e-5], ["0.0001", "unit: m)"])]:
+        for size, words in [([60.0, 100.0, 80.0], ["60 x 100 x 80 m", "unit: mm"]), ([6e-5, 1e-4, 8e-5], ["0.0001", "(unit: m)"])]:
             def change(content, size=size):
                 self.body(content, "box")["geometry"] = [{"box": {"size": size}}]
             self.refuse(2, ["box", *words], "--scene", self.scene("unit.yaml", change))
@@ -281,19 +281,20 @@ class Answers(Grasp):
 
     def test_inside_an_obstacle(self):
         def change(content):
-            self.body(content, "box")["pose"]["xyz"][2] -= 0.05
-        self.refuse(2, ["box stands 50 mm deep in table"], "--scene", self.scene("sunk.yaml", change))
+            self.body(content, "box")["pose"]["xyz"][2] -= 0.015
+        self.refuse(2, ["box stands 15 mm deep in table"], "--scene", self.scene("sunk.yaml", change))
 
     def test_in_a_cage(self):
         """Nothing gets in: the cause is the body that is in the way."""
         def change(content):
-            content["bodies"].append({"name": "lid", "pose": self.body(content, "box")["pose"], "geometry": [
-                {"box": {"size": [0.9, 0.9, 0.01]}, "pose": {"xyz": [0, 0, 0.195]}},
-                {"box": {"size": [0.01, 0.9, 0.2]}, "pose": {"xyz": [-0.06, 0, 0.101]}},
-                {"box": {"size": [0.01, 0.9, 0.2]}, "pose": {"xyz": [0.06, 0, 0.101]}}]})
+            walls = [{"box": {"size": [0.3, 0.3, 0.01]}, "pose": {"xyz": [0, 0, 0.2]}}]
+            for x, y in ((0.05, 0), (-0.05, 0), (0, 0.07), (0, -0.07)):
+                size = [0.01, 0.3, 0.2] if x else [0.3, 0.01, 0.2]
+                walls.append({"box": {"size": size}, "pose": {"xyz": [x, y, 0.101]}})
+            content["bodies"].append({"name": "cage", "pose": self.body(content, "box")["pose"], "geometry": walls})
         document = self.grasp("--scene", self.scene("cage.yaml", change), "--group", self.groups[0], code=1)
         self.assertEqual(document["grasps"], [])
-        self.assertRegex(document["causes"][0]["cause"], "surroundings|palm|lid")
+        self.assertRegex(document["causes"][0]["cause"], "palm|cage")
         self.assertIn("room", document["causes"][0]["advice"])
 
     def test_no_friction(self):
