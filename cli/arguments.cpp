@@ -224,6 +224,28 @@ void declare_check(CLI::App& app, CheckOptions& options) {
       ->delimiter(',');
 }
 
+void declare_quality(CLI::App& app, QualityOptions& options) {
+  app.add_option("FILE", options.file, "Contact sets, JSON (docs/cli.md)")->required();
+  app.add_option("--norm", options.norm, "Total normal force 1, each contact's normal force 1, or both")
+      ->check(CLI::IsMember({"L1", "Linf", "both"}))
+      ->capture_default_str();
+  app.add_option("--model", options.model, "Contact model, in place of the file's")
+      ->check(CLI::IsMember({"frictionless", "point_with_friction", "soft_finger"}));
+  app.add_option("--cone", options.cone, "Pyramids of edges, or the exact round cones, in place of the file's")
+      ->check(CLI::IsMember({"pyramid", "quadratic"}));
+  app.add_option("--unit", options.unit, "An edge's normal force or its force has length 1, in place of the file's")
+      ->check(CLI::IsMember({"normal", "force"}));
+  app.add_option("--edges", options.edges, "Edges of a pyramid, in place of the file's")->check(CLI::Range(3, 1024));
+  app.add_option("--mu", options.mu, "Friction coefficient of all contacts, in place of the file's")
+      ->check(CLI::Range(0.0, 1e6));
+  app.add_option("--gap", options.quadratic_gap, "Relative gap at which epsilon of quadratic cones is good enough")
+      ->check(CLI::Range(1e-6, 0.5))
+      ->capture_default_str();
+  app.add_option("--at-least", options.at_least, "Give up on a set, state below_incumbent, once epsilon is less");
+  app.add_flag("!--no-volume", options.volume, "Leave out the volume, which costs most of the time");
+  app.add_flag("--certificate", options.certificate, "Print the certificates, not only whether there are any");
+}
+
 void declare_mesh(CLI::App& app, MeshOptions& options) {
   app.add_option("FILE", options.files, "STL, OBJ or DAE")->required();
   app.add_option("--unit", options.unit, "Of the numbers in the files")
@@ -317,6 +339,8 @@ void add_commands(Builder& add) {
   add.command<PlanOptions>("plan", "Plan a hand-arm path to one of the grasps", plan, declare_plan);
   add.command<CheckOptions>("check", "Collision verdict, clearance and colliding pairs of given configurations", check,
                             declare_check);
+  add.command<QualityOptions>("quality", "Epsilon, volume, l* and certificate of given contact sets", quality,
+                              declare_quality);
   add.command<MeshOptions>("mesh", "Say what is wrong with triangle meshes; repair one", mesh, declare_mesh);
   add.command<VerifyOptions>("verify", "Check grasps and paths again by code of its own, all else by hash", verify,
                              declare_verify);

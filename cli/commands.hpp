@@ -135,6 +135,19 @@ struct CheckOptions {
   std::filesystem::path configs{};                ///< CSV
   std::vector<std::filesystem::path> requests{};  ///< MoveIt motion plan requests
 };
+struct QualityOptions {
+  std::filesystem::path file{};
+  std::string norm = "both";         ///< L1, Linf or both
+  std::string model{};               ///< of the contacts; empty, here and below: the file's
+  std::string cone{};                ///< pyramid or quadratic
+  std::string unit{};                ///< normal or force
+  std::optional<int> edges{};        ///< of a pyramid
+  std::optional<double> mu{};        ///< of all contacts
+  bool volume = true;                ///< costs a hull by qhull
+  bool certificate = false;          ///< print it, not only whether there is one
+  double quadratic_gap = 1e-3;       ///< relative, of quadratic cones' epsilon
+  std::optional<double> at_least{};  ///< give up below this epsilon
+};
 struct MeshOptions {
   std::vector<std::string> files{};
   std::string unit = "m";
@@ -176,6 +189,7 @@ int merge(const MergeOptions& options, const Console& console);
 int repair(const RepairOptions& options, const Console& console);
 int stale(const StaleOptions& options, const Console& console);
 int check(const CheckOptions& options, const Console& console);
+int quality(const QualityOptions& options, const Console& console);
 int mesh(const MeshOptions& options, const Console& console);
 int robot(const RobotOptions& options, const Console& console);
 int demo(const DemoOptions& options, const Console& console);

@@ -36,24 +36,25 @@ enum class ClosureState {
 struct QualityConvention {
   ContactModel model = ContactModel::point_with_friction;
   double mu = 0.5;
-  FrictionCone cone = FrictionCone::pyramid;
   int edges = 8;  ///< cone edges per contact; with a quadratic cone still those of l* and of certificates
   ForceUnit unit = ForceUnit::normal;
   WrenchNorm norm = WrenchNorm::l1;
   double rho = 1.0;             ///< m, torque is divided by it
   double torsion_radius = 0.0;  ///< m, soft finger only: the torque semi-axis of the friction ellipsoid
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< m, in O: the point torques are taken about
+  FrictionCone cone = FrictionCone::pyramid;
 };
 
 struct GraspQuality {
   ClosureState state = ClosureState::rank_deficient;
   std::optional<double> epsilon;  ///< radius of the largest origin-centred ball in the wrench hull; negative: minus the
                                   ///< distance of the origin to the hull; nullopt when the set is rank deficient
-  double epsilon_gap = 0.0;       ///< the true epsilon is at least epsilon and at most epsilon + |epsilon| epsilon_gap
   std::optional<double> min_weight;  ///< l*: max l with W a = 0, 1'a = 1, a >= l; nullopt when W a = 0 has no solution
   std::optional<double> volume;      ///< of the wrench hull; nullopt when not computed
   Eigen::Matrix<double, 6, 1> direction = Eigen::Matrix<double, 6, 1>::Zero();  ///< facet normal that decides epsilon
   QualityConvention convention;
+  /// The true epsilon is at least epsilon and at most epsilon + |epsilon| epsilon_gap; zero but for quadratic cones.
+  double epsilon_gap = 0.0;
   bool force_closure() const { return state == ClosureState::force_closure; }
 };
 

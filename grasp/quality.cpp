@@ -54,7 +54,7 @@ GraspQuality evaluate(const std::vector<Contact>& contacts, const QualityConvent
   quality.direction = ball.direction;
   if (ball.below) return quality;
   if (ball.converged || space.curved()) quality.epsilon = ball.radius;  // else nobody knows it
-  if (ball.radius != 0.0) quality.epsilon_gap = (ball.upper - ball.radius) / std::abs(ball.radius);
+  if (space.curved() && ball.radius != 0.0) quality.epsilon_gap = (ball.upper - ball.radius) / std::abs(ball.radius);
   if (request.volume) {
     if (const auto hull = wrench_hull(space.points(kMaxHullPoints))) quality.volume = hull->volume;
   }

@@ -15,10 +15,10 @@
 namespace opponens::grasp {
 namespace {
 
-constexpr double kGravity = 9.80665;  // m/s^2, standard
-constexpr double kGap = 1e-9;         // relative, of sets of points
-constexpr double kOutside = 1e-9;     // of the scale: a direction separates when the set does not pass it by more
-constexpr int kMaxPoints = 5000;
+constexpr double kGravity = 9.80665;    // m/s^2, standard
+constexpr double kRayGap = 1e-9;        // relative, of sets of points
+constexpr double kRaySeparated = 1e-9;  // of the scale: a direction separates when the set does not pass it by more
+constexpr int kMaxRayPoints = 5000;
 
 /// One answer of the programme over some points of the set.
 struct Ray {
@@ -28,7 +28,7 @@ struct Ray {
   bool converged = true;
 };
 
-Ray cast(const Matrix6Xd& points, const Vector6d& load) {
+Ray cast_ray(const Matrix6Xd& points, const Vector6d& load) {
   SixRowSimplex simplex(points, load);
   Ray ray;
   const std::optional<bool> feasible = simplex.feasible();
@@ -44,21 +44,21 @@ Ray cast(const Matrix6Xd& points, const Vector6d& load) {
 LoadFactor load_factor(const WrenchSpace& space, const Vector6d& load, double relative_gap) {
   require(load.allFinite() && load.norm() > 0.0, "load_factor: the load must be finite and not zero");
   require(!space.curved() || relative_gap > 0.0, "load_factor: a curved set needs a relative_gap > 0");
-  const double gap = std::max(relative_gap, kGap);
+  const double gap = std::max(relative_gap, kRayGap);
   const double unit = 1.0 / space.scale();
   const Vector6d toward = load.normalized();
   Matrix6Xd points = unit * space.wrenches();
   LoadFactor result;
   result.upper = std::numeric_limits<double>::infinity();
   result.converged = false;
-  while (points.cols() < kMaxPoints) {
-    const Ray ray = cast(points, toward);
+  while (points.cols() < kMaxRayPoints) {
+    const Ray ray = cast_ray(points, toward);
     if (!ray.converged) break;
     const Vector6d p = unit * space.support(ray.dual);
     const double beyond = ray.dual.dot(p);
     if (!ray.reached) {
       // The dual separates the load from the points; where no point of the set passes it either, from the set.
-      result.converged = beyond <= kOutside * ray.dual.norm();
+      result.converged = beyond <= kRaySeparated * ray.dual.norm();
       if (result.converged) {
         result.upper = 0.0;
         result.direction = ray.dual.normalized();

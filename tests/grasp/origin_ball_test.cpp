@@ -99,6 +99,33 @@ TEST(OriginBall, InvariantUnderRotationOfTheObject) {
   }
 }
 
+// An incumbent ends the search exactly when it is better, and mostly long before the radius is known.
+TEST(OriginBall, GivesUpBelowAnIncumbent) {
+  Rng rng = stream(14, "incumbent");
+  int inside = 0;
+  std::int64_t facets = 0;
+  std::int64_t facets_until_given_up = 0;
+  for (int i = 0; i < 200; ++i) {
+    const WrenchNorm norm = i % 10 == 0 ? WrenchNorm::linf : WrenchNorm::l1;
+    const WrenchSpace space(contact_wrenches(test::random_contacts(5, 0.3, rng), {}), 8, norm);
+    const OriginBall ball = largest_origin_ball(space);
+    if (!ball.inside) continue;
+    ++inside;
+    const OriginBall better = largest_origin_ball(space, {.at_least = 0.999 * ball.radius});
+    EXPECT_FALSE(better.below);
+    EXPECT_EQ(better.radius, ball.radius) << "set " << i;
+    const OriginBall worse = largest_origin_ball(space, {.at_least = 1.2 * ball.radius});
+    EXPECT_TRUE(worse.below);
+    EXPECT_FALSE(worse.inside);
+    EXPECT_LT(worse.upper, 1.2 * ball.radius);
+    EXPECT_NEAR(worse.direction.dot(space.support(worse.direction)), worse.upper, 1e-9) << "set " << i;
+    facets += ball.facets;
+    facets_until_given_up += worse.facets;
+  }
+  EXPECT_GT(inside, 50);
+  EXPECT_LT(3 * facets_until_given_up, facets);
+}
+
 // Two methods agree: the growing polytope against qhull's whole hull.
 TEST(OriginBall, EqualsQhullOnRandomForceClosureSets) {
   Rng rng = stream(12, "qhull");

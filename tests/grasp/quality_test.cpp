@@ -69,6 +69,15 @@ TEST(Quality, StatesOfPoorSets) {
   EXPECT_NEAR((quality.direction.transpose() * w).maxCoeff(), quality.epsilon.value(), 1e-10);
 }
 
+TEST(Quality, BelowAnIncumbentIsAStateWithoutEpsilon) {
+  const double epsilon = evaluate(three_on_a_sphere(0.5), {}).epsilon.value();
+  const GraspQuality given_up = evaluate(three_on_a_sphere(0.5), {}, {.at_least = 1.01 * epsilon});
+  EXPECT_EQ(given_up.state, ClosureState::below_incumbent);
+  EXPECT_FALSE(given_up.epsilon.has_value());
+  EXPECT_FALSE(given_up.force_closure());
+  EXPECT_EQ(evaluate(three_on_a_sphere(0.5), {}, {.at_least = 0.99 * epsilon}).epsilon, epsilon);
+}
+
 // Seven frictionless contacts can hold a body, six never can (Somov 1900): wrenches that positively span R^6.
 TEST(Quality, SevenFrictionlessContactsHoldACubeAndNoSixOfThemDo) {
   Rng rng = stream(31, "cube");
