@@ -64,7 +64,7 @@ std::optional<Certificate> certify_in_doubles(const std::vector<CertificateEdge>
 
 /// Whether some direction separates the origin from all wrenches by more than rounding: then nothing balances.
 bool surely_open(const std::vector<CertificateEdge>& edges, const std::vector<Contact>& contacts) {
-  const Matrix6Xd wrenches = scaled_wrenches(edges, contacts);
+  const Matrix6Xd wrenches = scaled_wrenches(edges, contacts).colwise().normalized();
   if (!wrenches.allFinite()) return false;
   const Vector6d nearest = min_norm_point(WrenchSpace(wrenches, 1, WrenchNorm::l1)).point;
   return (nearest.transpose() * wrenches).minCoeff() > kOutside * nearest.norm();

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <utility>
 
 #include <boost/multiprecision/gmp.hpp>

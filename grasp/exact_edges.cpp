@@ -14,6 +14,7 @@ namespace {
 
 constexpr int kFineBits = 48;          // five less than a double has: its own rounding is below the quantum
 constexpr double kMostGiven = 1.0e-3;  // of the friction, for rounding
+constexpr double kMostFriction = 1e6;  // what is inside this cone is inside a wider one too
 
 /// The largest power of two that is not above x.
 double power_of_two(double x) { return std::ldexp(1.0, std::ilogb(x)); }
@@ -29,12 +30,11 @@ CertificateEdge along_normal(int contact, const Contact& at) { return {contact, 
 /// An edge of unit normal force as contact_wrenches has it, [force; torque about the contact point], moved inside.
 CertificateEdge inner_edge(int contact, const Contact& at, const Vector6d& nominal, double kept, double quantum) {
   const Eigen::Vector3d n = at.n_O.normalized();
-  const Eigen::Vector3d force = nominal.head<3>() / nominal.head<3>().dot(n);
   const double grid = quantum * power_of_two(std::max(1.0, at.mu));
-  CertificateEdge edge{contact, n + kept * (force - n), 0.0, {}};
+  CertificateEdge edge{contact, n + kept * (nominal.head<3>() - n), 0.0, {}};
   for (double& component : edge.force) component = rounded(component, grid);
   // The stored normal is a unit vector to 1e-6 only, and the torque is torsion * n_O.
-  const double torsion = kept * nominal.tail<3>().dot(n) / (nominal.head<3>().dot(n) * at.n_O.norm());
+  const double torsion = kept * nominal.tail<3>().dot(n) / at.n_O.norm();
   if (torsion != 0.0) edge.torsion = rounded(torsion, quantum * power_of_two(std::abs(torsion)));
   return edge;
 }
@@ -46,25 +46,28 @@ std::vector<CertificateEdge> inner_edges(const std::vector<Contact>& contacts, c
   std::vector<CertificateEdge> edges;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const int index = static_cast<int>(i);
-    QualityConvention about_contact = convention;
-    about_contact.origin = contacts[i].p_OC;
-    about_contact.rho = 1.0;
-    const Matrix6Xd nominal = contact_wrenches({contacts[i]}, about_contact);
+    Contact contact = contacts[i];
+    contact.mu = std::min(contact.mu, kMostFriction);
     double quantum = std::ldexp(1.0, -fraction_bits);
     double kept = 0.0;
-    if (convention.model != ContactModel::frictionless && contacts[i].mu > 0.0) {
-      kept = kept_friction(contacts[i].mu, quantum);
+    if (convention.model != ContactModel::frictionless && contact.mu > 0.0) {
+      kept = kept_friction(contact.mu, quantum);
       if (kept < 1.0 - kMostGiven) {
         quantum = std::ldexp(1.0, -kFineBits);
-        kept = kept_friction(contacts[i].mu, quantum);
+        kept = kept_friction(contact.mu, quantum);
       }
     }
+    QualityConvention about_contact = convention;
+    about_contact.unit = ForceUnit::normal;
+    about_contact.origin = contact.p_OC;
+    about_contact.rho = 1.0;
+    const Matrix6Xd nominal = contact_wrenches({contact}, about_contact);
     if (kept < 1.0 - kMostGiven) {
-      edges.push_back(along_normal(index, contacts[i]));
+      edges.push_back(along_normal(index, contact));
       continue;
     }
     for (Eigen::Index j = 0; j < nominal.cols(); ++j) {
-      edges.push_back(inner_edge(index, contacts[i], nominal.col(j), kept, quantum));
+      edges.push_back(inner_edge(index, contact, nominal.col(j), kept, quantum));
     }
   }
   return edges;

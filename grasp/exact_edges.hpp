@@ -13,7 +13,7 @@ namespace opponens::grasp {
 /// (times the power of two at or below mu, where mu > 1) and torsions likewise relative to theirs. Each is first moved
 /// towards the normal by a little more than the rounding, so that it is inside the cone. Where that would cost more
 /// than 1/1000 of the friction, 48 bits are used instead, and where that does too (mu below 1e-11) the stored normal.
-/// Coefficients are left empty.
+/// Of a friction coefficient above 1e6 that much is used. Coefficients are left empty.
 std::vector<CertificateEdge> inner_edges(const std::vector<Contact>& contacts, const QualityConvention& convention,
                                          int fraction_bits);
 

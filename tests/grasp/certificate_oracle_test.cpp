@@ -42,7 +42,7 @@ TEST(CertificateOracle, RandomMixedSets) {
     const int contacts_count = frictionless ? 7 + static_cast<int>(rng.index(6)) : 2 + static_cast<int>(rng.index(5));
     const auto contacts = test::random_contacts(contacts_count, rng.uniform(0.1, frictionless ? 3.0 : 1.0), rng);
     const auto certificate = certify(contacts, convention);
-    EXPECT_EQ(certificate.has_value(), test::positively_spans(test::oracle_wrenches(contacts, convention)))
+    EXPECT_EQ(certificate.has_value(), test::positively_span(test::oracle_wrenches(contacts, convention)))
         << "set " << i;
     EXPECT_EQ(certificate.has_value(), evaluate(contacts, convention).force_closure()) << "set " << i;
     closed += certificate.has_value();
@@ -83,7 +83,7 @@ TEST(CertificateOracle, NearlySingularSets) {
     for (const double off : {0.0, 1e-3, -1e-3, 1e-6, -1e-6, 1e-9, -1e-9, 1e-11, -1e-11}) {
       const std::vector<Contact> contacts = nearly_singular(off, line, rng);
       const QualityConvention convention;
-      const bool expected = test::positively_spans(test::oracle_wrenches(contacts, convention));
+      const bool expected = test::positively_span(test::oracle_wrenches(contacts, convention));
       const auto certificate = certify(contacts, convention);
       EXPECT_EQ(certificate.has_value(), expected) << line << " " << off;
       if (certificate) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdlib>
 #include <vector>
 
 #include <CGAL/Gmpq.h>
@@ -40,26 +41,39 @@ inline std::vector<std::array<CGAL::Gmpzf, 6>> oracle_wrenches(const std::vector
   return wrenches;
 }
 
-/// Whether W a = 0 has a solution a >= 1, by CGAL's linear programme over all wrenches, and W has rank 6. Exact.
-inline bool positively_spans(const std::vector<std::array<CGAL::Gmpzf, 6>>& wrenches) {
+/// Whether W a = 0 has a solution a >= 1, by CGAL's linear programme over all wrenches, with a = 1 + b, b >= 0.
+inline bool balance(const std::vector<std::array<CGAL::Gmpzf, 6>>& wrenches) {
   using Number = CGAL::Gmpzf;
-  using Algebra = CGAL::Linear_algebraCd<CGAL::Gmpq>;
-  CGAL::Quadratic_program<Number> programme(CGAL::EQUAL, true, 0, false, 0);  // a = 1 + b, b >= 0
-  Algebra::Matrix rows(6, static_cast<int>(wrenches.size()));
-  for (int i = 0; i < 6; ++i) {
+  CGAL::Quadratic_program<Number> programme(CGAL::EQUAL, true, 0, false, 0);
+  for (std::size_t i = 0; i < 6; ++i) {
     Number sum(0);
-    for (int j = 0; j < static_cast<int>(wrenches.size()); ++j) {
-      const Number& entry = wrenches[static_cast<std::size_t>(j)][static_cast<std::size_t>(i)];
-      programme.set_a(j, i, entry);
-      sum += entry;
-      rows(i, j) = CGAL::Gmpq(entry.man());
-      const long shift = entry.exp();
-      for (long s = 0; s < std::abs(shift); ++s) rows(i, j) *= shift > 0 ? CGAL::Gmpq(2) : CGAL::Gmpq(1, 2);
+    for (std::size_t j = 0; j < wrenches.size(); ++j) {
+      programme.set_a(static_cast<int>(j), static_cast<int>(i), wrenches[j][i]);
+      sum += wrenches[j][i];
     }
-    programme.set_b(i, -sum);
+    programme.set_b(static_cast<int>(i), -sum);
   }
-  if (wrenches.size() < 7 || Algebra::rank(rows) < 6) return false;
   return !CGAL::solve_nonnegative_linear_program(programme, Number()).is_infeasible();
+}
+
+inline int exact_rank(const std::vector<std::array<CGAL::Gmpzf, 6>>& wrenches) {
+  using Algebra = CGAL::Linear_algebraCd<CGAL::Gmpq>;
+  Algebra::Matrix rows(6, static_cast<int>(wrenches.size()));
+  for (std::size_t j = 0; j < wrenches.size(); ++j) {
+    for (std::size_t i = 0; i < 6; ++i) {
+      CGAL::Gmpq entry(wrenches[j][i].man());
+      const long exponent = wrenches[j][i].exp();
+      const CGAL::Gmpq factor = exponent > 0 ? CGAL::Gmpq(2) : CGAL::Gmpq(1, 2);
+      for (long s = 0; s < std::abs(exponent); ++s) entry *= factor;
+      rows(static_cast<int>(i), static_cast<int>(j)) = entry;
+    }
+  }
+  return wrenches.empty() ? 0 : Algebra::rank(rows);
+}
+
+/// Whether the wrenches positively span R^6: what a certificate says. Exact.
+inline bool positively_span(const std::vector<std::array<CGAL::Gmpzf, 6>>& wrenches) {
+  return exact_rank(wrenches) == 6 && balance(wrenches);
 }
 
 }  // namespace opponens::test

@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "grasp/certificate.hpp"
 #include "tests/verify/gantry.hpp"
 
 namespace opponens::verify {
@@ -136,6 +137,81 @@ TEST_F(CheckGrasp, QualityByForceUnitAndMaximumNorm) {
       EXPECT_TRUE(fault_is("the stored epsilon"));
     }
   }
+}
+
+TEST_F(CheckGrasp, CertificateIsReCheckedAndOneThatIsMissingIsNoFailure) {
+  const auto certified = [&] { return check_grasp(grasp, {&box, &hand, &object}).certified; };
+  EXPECT_EQ(fault(), "");
+  EXPECT_FALSE(certified());
+  grasp.certificate = grasp::certify(grasp.contacts, grasp.quality);
+  ASSERT_TRUE(grasp.certificate && grasp.certificate->epsilon_bound);
+  EXPECT_EQ(fault(), "");
+  EXPECT_TRUE(certified());
+  const Certificate right = *grasp.certificate;
+  grasp.certificate->edges[0].coefficient = "0";
+  EXPECT_TRUE(fault_is("the certificate of force closure does not hold: edge 0 has the coefficient '0'"));
+  EXPECT_FALSE(certified());
+  grasp.certificate = right;
+  grasp.certificate->edges.pop_back();
+  EXPECT_TRUE(fault_is("the certificate of force closure does not hold: its weighted wrenches do not add up to zero"));
+  grasp.certificate = Certificate{};
+  EXPECT_TRUE(fault_is("its wrenches have rank 0, not 6"));
+  grasp.certificate = right;
+  Contact& moved = grasp.contacts[static_cast<std::size_t>(right.edges[0].contact)];
+  moved.p_OC.z() += 1e-12;  // far below what the checks in floating point ask for
+  EXPECT_TRUE(fault_is("do not add up to zero"));
+  moved.p_OC.z() -= 1e-12;
+  moved.mu = 0.1;
+  EXPECT_TRUE(fault_is("is outside the friction cone"));
+}
+
+TEST_F(CheckGrasp, CertificatesBoundOfEpsilon) {
+  grasp.certificate = grasp::certify(grasp.contacts, grasp.quality);
+  double& bound = *grasp.certificate->epsilon_bound;
+  bound += 1e-6;  // a weaker bound is one too
+  EXPECT_EQ(fault(), "");
+  bound -= 1e-6 + 1e-12;
+  EXPECT_TRUE(fault_is("the certificate's bound of epsilon does not hold"));
+  bound = NAN;
+  EXPECT_TRUE(fault_is("is not finite"));
+  bound = -1.0;
+  EXPECT_TRUE(fault_is("is above it"));
+}
+
+TEST_F(CheckGrasp, SoftFingersInFull) {
+  QualityConvention convention = grasp.quality.convention;
+  convention.model = ContactModel::soft_finger;
+  convention.torsion_radius = 0.004;
+  grasp.quality = grasp::evaluate(grasp.contacts, convention);
+  grasp.certificate = grasp::certify(grasp.contacts, grasp.quality);
+  EXPECT_EQ(fault(), "");
+  grasp.quality.epsilon = 1.02 * *grasp.quality.epsilon;
+  EXPECT_TRUE(fault_is("the stored epsilon"));
+  grasp.quality.convention.torsion_radius = 0.0;
+  EXPECT_TRUE(fault_is("torsion radius is not positive"));
+}
+
+TEST(ContactEdges, AreThoseOfTheConvention) {
+  const std::vector<Contact> contacts = cube_grasp().contacts;
+  for (const auto model : {ContactModel::frictionless, ContactModel::point_with_friction, ContactModel::soft_finger}) {
+    for (const auto unit : {ForceUnit::normal, ForceUnit::force}) {
+      QualityConvention convention{model, 0.5, 7, unit, WrenchNorm::l1, 0.035, 0.003, {0.01, 0.02, 0.03}};
+      const auto here = contact_wrenches(contacts, convention);
+      const auto there = grasp::contact_wrenches(contacts, convention);  // another code
+      ASSERT_EQ(here.cols(), there.cols());
+      EXPECT_LT((here - there).cwiseAbs().maxCoeff(), 1e-14);
+    }
+  }
+}
+
+TEST(PositiveSpan, TorsionCloses) {
+  const std::vector<Contact> pinch = {{"a", Eigen::Vector3d::UnitX(), -Eigen::Vector3d::UnitX(), 0.5},
+                                      {"b", -Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitX(), 0.5}};
+  QualityConvention convention;
+  EXPECT_FALSE(positive_span(pinch, convention).spans);
+  convention.model = ContactModel::soft_finger;
+  convention.torsion_radius = 0.01;
+  EXPECT_TRUE(positive_span(pinch, convention).spans);
 }
 
 TEST(CheckArmSolutions, MustPutThePalmAtTheGrasp) {
