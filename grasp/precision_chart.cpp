@@ -66,9 +66,8 @@ void PointSlopes::add(std::size_t link, const Eigen::Vector3d& p_O, const Eigen:
     const robot::Joint& joint = d.joints[static_cast<std::size_t>(d.links[moved].joint)];
     const Eigen::Isometry3d& X_HJ = (*X_HL_)[moved];
     const Eigen::Vector3d axis = X_HJ.linear() * joint.axis;
-    const double along = joint.type == robot::JointType::prismatic
-                             ? axis.dot(g_H)
-                             : axis.dot((p_H - X_HJ.translation()).cross(g_H));
+    const double along =
+        joint.type == robot::JointType::prismatic ? axis.dot(g_H) : axis.dot((p_H - X_HJ.translation()).cross(g_H));
     const LinkDrive& drive = surface_.drives[moved];
     slope[6 + drive.index] += drive.multiplier * along;
   }

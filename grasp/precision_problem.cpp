@@ -7,51 +7,22 @@
 #include <limits>
 
 #include "analysis/synergy_box.hpp"
-#include "core/require.hpp"
 #include "grasp/quality.hpp"
 #include "grasp/wrench_gradient.hpp"
 
 namespace opponens::grasp {
 namespace {
 
-constexpr double kLengthUnit = 0.01;       // m per unit of gaps and excess: near to the size of quality's changes
-constexpr double kAngleUnit = 0.1;         // rad per unit of excess
-constexpr double kObjectMargin = 0.0015;   // m; the final check asks for 0.5 mm of dense points
-constexpr double kHandMargin = 0.0015;     // m; the final check asks for 0.5 mm
-constexpr double kSupportMargin = 0.002;   // m; the final check asks for 1 mm
-constexpr double kNotTheBall = 0.0005;     // m, a sample this far from a tip's ball belongs to the rest of its link
-constexpr double kBeyond = 0.005;          // m, bodies farther apart than this have no slope
-constexpr double kFieldMargin = 0.06;      // m around the object
-constexpr std::size_t kFieldNodes = 1000000;
+constexpr double kLengthUnit = 0.01;      // m per unit of gaps and excess: near to the size of quality's changes
+constexpr double kAngleUnit = 0.1;        // rad per unit of excess
+constexpr double kObjectMargin = 0.0015;  // m; the final check asks for 0.5 mm of dense points
+constexpr double kHandMargin = 0.0015;    // m; the final check asks for 0.5 mm
+constexpr double kLimitMargin = 0.006;    // rad; what the optimiser counts as feasible is 0.005 rad off
+constexpr double kSupportMargin = 0.002;  // m; the final check asks for 1 mm
+constexpr double kNotTheBall = 0.0005;    // m, a sample this far from a tip's ball belongs to the rest of its link
+constexpr double kBeyond = 0.005;         // m, bodies farther apart than this have no slope
 
 }  // namespace
-
-PrecisionSpace make_precision_space(const robot::RobotModel& hand, const HandSurface& surface,
-                                    const GraspTarget& target, const SynergyBox& box, TipModel model,
-                                    const QualityConvention& convention, PrecisionGoal goal, double max_penetration) {
-  require(convention.norm == WrenchNorm::l1, "precision grasps: the quality's norm must be L1");
-  const Eigen::Matrix3Xd& v = target.mesh->vertices;
-  const Eigen::Vector3d lower = v.rowwise().minCoeff().array() - kFieldMargin;
-  const Eigen::Vector3d upper = v.rowwise().maxCoeff().array() + kFieldMargin;
-  std::vector<FingerTip> tips = finger_tips(hand, surface, model);
-  require(tips.size() >= 2, "precision grasps: the hand description names fewer than two tips");
-  return {hand,       surface, target, box, std::move(tips), TipField(*target.grid, lower, upper, target.grid->spacing(), kFieldNodes),
-          convention, goal,    max_penetration};
-}
-
-SynergyBox free_box(const Eigen::VectorXd& lower, const Eigen::VectorXd& upper) {
-  require(lower.size() == upper.size() && (upper - lower).minCoeff() >= 0.0, "free_box: lower must not exceed upper");
-  SynergyBox box;
-  box.center = 0.5 * (lower + upper);
-  box.axes = Eigen::MatrixXd::Identity(lower.size(), lower.size());
-  box.half_width = 0.5 * (upper - lower);
-  box.scale = Eigen::VectorXd::Ones(lower.size());
-  box.alpha = 0.0;
-  box.beta = 0.0;
-  return box;
-}
-
-SynergyBox free_box(const robot::RobotModel& hand) { return free_box(hand.lower(), hand.upper()); }
 
 double PrecisionValue::violation() const {
   const double touching = gaps.size() > 0 ? gaps.cwiseAbs().maxCoeff() : 0.0;
@@ -88,7 +59,8 @@ PrecisionProblem::PrecisionProblem(const PrecisionSpace& space)
   const Eigen::VectorXd middle = box.scale.cwiseProduct(box.center);
   const Eigen::VectorXd reach = box.scale.cwiseProduct(box.axes.cwiseAbs() * box.half_width);
   for (int j = 0; j < space.hand.dof(); ++j) {
-    const bool out = middle[j] + reach[j] > space.hand.upper()[j] + 1e-9 || middle[j] - reach[j] < space.hand.lower()[j] - 1e-9;
+    const bool out =
+        middle[j] + reach[j] > space.hand.upper()[j] + 1e-9 || middle[j] - reach[j] < space.hand.lower()[j] - 1e-9;
     if (out) limited_.push_back(j);
   }
   value_.quality_slope.resize(size());
@@ -195,7 +167,8 @@ void PrecisionProblem::watch_object(bool slopes) {
 PrecisionProblem::Least PrecisionProblem::least_between(std::size_t a, std::size_t b) const {
   const HandSurface& surface = space_.surface;
   const Eigen::Isometry3d X_BA = X_HL_[b].inverse() * X_HL_[a];
-  const double bound = (X_BA * surface.link_center[a] - surface.link_center[b]).norm() - surface.link_radius[a] - surface.link_radius[b];
+  const double bound =
+      (X_BA * surface.link_center[a] - surface.link_center[b]).norm() - surface.link_radius[a] - surface.link_radius[b];
   Least least{bound};
   if (bound > kHandMargin + kBeyond) return least;
   least.value = std::numeric_limits<double>::infinity();
@@ -204,7 +177,8 @@ PrecisionProblem::Least PrecisionProblem::least_between(std::size_t a, std::size
     const Eigen::Vector3d p_B = X_BA * p_A;
     const double apart = (p_B - surface.link_center[b]).norm();
     if (apart > reach) {  // a bound will do
-      if (apart - surface.link_radius[b] < least.value) least = {apart - surface.link_radius[b], -1, -1, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+      if (apart - surface.link_radius[b] < least.value)
+        least = {apart - surface.link_radius[b], -1, -1, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
       continue;
     }
     const SignedDistance d = surface.links[b].query(p_B, 1.0);
@@ -253,7 +227,7 @@ void PrecisionProblem::watch_obstacles(bool slopes) {
 
 void PrecisionProblem::watch_limits(bool slopes) {
   const auto limit = [&](int joint, double excess, double sign) {
-    value_.excess[row_] = excess / kAngleUnit;
+    value_.excess[row_] = (excess + kLimitMargin) / kAngleUnit;
     if (slopes) {
       by_joints_.setZero();
       by_joints_[6 + joint] = sign / kAngleUnit;

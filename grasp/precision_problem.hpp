@@ -9,38 +9,12 @@
 #include <Eigen/Geometry>
 
 #include "core/grasp.hpp"
-#include "core/synergies.hpp"
 #include "grasp/grasp_objective.hpp"
-#include "grasp/grasp_target.hpp"
-#include "grasp/hand_surface.hpp"
 #include "grasp/precision_chart.hpp"
-#include "grasp/precision_quality.hpp"
+#include "grasp/precision_space.hpp"
 #include "grasp/tip_contact.hpp"
-#include "grasp/tip_field.hpp"
-#include "robot/robot_model.hpp"
 
 namespace opponens::grasp {
-
-/// Everything that a search of precision grasps reads; refers to the caller's hand, surface, target and box.
-struct PrecisionSpace {
-  const robot::RobotModel& hand;
-  const HandSurface& surface;
-  const GraspTarget& target;
-  const SynergyBox& box;
-  std::vector<FingerTip> tips;
-  TipField field;
-  QualityConvention convention;
-  PrecisionGoal goal;
-  double max_penetration;  ///< m, of a tip's link into the object
-};
-
-PrecisionSpace make_precision_space(const robot::RobotModel& hand, const HandSurface& surface,
-                                    const GraspTarget& target, const SynergyBox& box, TipModel model,
-                                    const QualityConvention& convention, PrecisionGoal goal, double max_penetration);
-
-/// The box whose axes are the joints themselves: all of their range, [n] rad. A grasp in it is not held to synergies.
-SynergyBox free_box(const Eigen::VectorXd& lower, const Eigen::VectorXd& upper);
-SynergyBox free_box(const robot::RobotModel& hand);  ///< the hand's joint limits
 
 /// Row-major, as NLopt wants the slopes of vector constraints.
 using SlopeRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -64,7 +38,7 @@ struct PrecisionValue {
 ///   object     per link, 1.5 mm less the distance; links that carry a tip may be max_penetration / 2 deep
 ///   itself     per pair of fingers (or palm), 1.5 mm less the distance of points of one to the other's bodies
 ///   obstacles  per finger and palm, 2 mm less the distance to support and obstacles
-///   limits     per joint that the box lets out of its limits
+///   limits     per joint that the box lets out of its limits, 6 mrad more than the violation
 /// Bodies that are far apart by their bounding spheres have that bound as value, and no slope.
 class PrecisionProblem {
  public:
@@ -81,7 +55,6 @@ class PrecisionProblem {
 
   /// The gaps by the exact distance (m) and their slopes [tips x n] by x; for the last steps to contact.
   std::vector<TipTouch> touches(const Eigen::VectorXd& x, SlopeRows& slopes);
-  const std::vector<FingerTip>& tips() const { return space_.tips; }
 
  private:
   struct Group {  ///< the palm with what is fixed to it, or a finger
@@ -108,10 +81,10 @@ class PrecisionProblem {
   HandSeed seed_;
   PointSlopes points_;
   std::vector<Group> groups_;
-  std::vector<std::size_t> bodies_;                       ///< links that are watched against the object
-  std::vector<std::vector<Eigen::Vector3d>> samples_;     ///< per link, p_L, without the tip's ball
-  std::vector<double> margin_;                            ///< per link, m, least distance to the object
-  std::vector<int> limited_;                              ///< joints that the box lets out of their limits
+  std::vector<std::size_t> bodies_;                    ///< links that are watched against the object
+  std::vector<std::vector<Eigen::Vector3d>> samples_;  ///< per link, p_L, without the tip's ball
+  std::vector<double> margin_;                         ///< per link, m, least distance to the object
+  std::vector<int> limited_;                           ///< joints that the box lets out of their limits
   std::vector<Eigen::Isometry3d> X_HL_;
   Eigen::Isometry3d X_OH_ = Eigen::Isometry3d::Identity();
   Eigen::VectorXd q_;

@@ -38,7 +38,8 @@ std::string fault_of(const PrecisionSearch& search, const HandPose& pose, const 
 }
 
 /// Runs trials [first, first + count) on the settings' threads, in trial order whatever the thread count.
-std::vector<PrecisionTrial> run_trials(const PrecisionSearch& search, std::uint64_t seed, std::int64_t first, int count) {
+std::vector<PrecisionTrial> run_trials(const PrecisionSearch& search, std::uint64_t seed, std::int64_t first,
+                                       int count) {
   std::vector<PrecisionTrial> trials(static_cast<std::size_t>(count));
   std::atomic<int> next{0};
   std::mutex guard;
@@ -76,13 +77,13 @@ bool alike(const Grasp& a, const Grasp& b, const PrecisionSettings& settings) {
 
 /// Best first, each different from the better ones, at most settings.count.
 std::vector<Grasp> best_of(std::vector<Grasp> found, const PrecisionSettings& settings) {
-  std::stable_sort(found.begin(), found.end(), [&](const Grasp& a, const Grasp& b) {
-    return worth(a, settings.goal) > worth(b, settings.goal);
-  });
+  std::stable_sort(found.begin(), found.end(),
+                   [&](const Grasp& a, const Grasp& b) { return worth(a, settings.goal) > worth(b, settings.goal); });
   std::vector<Grasp> kept;
   for (Grasp& grasp : found) {
     if (kept.size() == static_cast<std::size_t>(settings.count)) break;
-    const bool repeats = std::any_of(kept.begin(), kept.end(), [&](const Grasp& better) { return alike(better, grasp, settings); });
+    const bool repeats =
+        std::any_of(kept.begin(), kept.end(), [&](const Grasp& better) { return alike(better, grasp, settings); });
     if (!repeats) kept.push_back(std::move(grasp));
   }
   return kept;
@@ -191,9 +192,8 @@ SearchResult search_precision_grasps(const PrecisionSearch& search, std::uint64_
 }
 
 SearchResult search_precision_grasps(const robot::RobotModel& hand, const robot::Scene& scene,
-                                     const std::string& object, const SynergyGroup& group,
-                                     const SynergyBox* pre_grasp, const PrecisionSettings& settings,
-                                     std::uint64_t seed) {
+                                     const std::string& object, const SynergyGroup& group, const SynergyBox* pre_grasp,
+                                     const PrecisionSettings& settings, std::uint64_t seed) {
   validate(settings);
   require(group.box.center.size() == hand.dof() && group.box.half_width.size() > 0,
           "search_precision_grasps: the synergy box must be of the hand's joints, with at least one synergy");
@@ -201,10 +201,9 @@ SearchResult search_precision_grasps(const robot::RobotModel& hand, const robot:
   const Eigen::VectorXd middle = hand.clip(group.box.scale.cwiseProduct(group.box.center));
   const HandSurface surface = hand_surface(hand, middle);
   const HandCheckers checkers = hand_checkers(hand, scene, object);
-  const PrecisionSpace space =
-      make_precision_space(hand, surface, target, group.box, settings.tips,
-                           settings.convention.value_or(default_convention(target, settings.mu)), settings.goal,
-                           settings.max_penetration);
+  const PrecisionSpace space = make_precision_space(
+      hand, surface, target, group.box, settings.tips,
+      settings.convention.value_or(default_convention(target, settings.mu)), settings.goal, settings.max_penetration);
   return search_precision_grasps({space, settings, checkers, group.name, pre_grasp}, seed);
 }
 

@@ -20,20 +20,20 @@
 namespace opponens::grasp {
 
 struct PrecisionSettings {
-  int count = 5;         ///< grasps to return
-  int max_trials = 200;  ///< seeds tried; the search stops on counts, never on a clock
-  int enough = 10;       ///< stop when this many trials gave a grasp; at least count
-  int draws = 48;        ///< seeds drawn per trial; the best is optimised
+  int count = 5;              ///< grasps to return
+  int max_trials = 200;       ///< seeds tried; the search stops on counts, never on a clock
+  int enough = 10;            ///< stop when this many trials gave a grasp; at least count
+  int draws = 48;             ///< seeds drawn per trial; the best is optimised
   int max_evaluations = 120;  ///< of the problem per trial, by the optimiser
   PrecisionGoal goal = PrecisionGoal::min_weight;
   PrecisionSolver solver = PrecisionSolver::slsqp;
   TipModel tips = TipModel::ball;
-  double mu = 0.5;                               ///< friction coefficient, of the convention below
-  std::optional<QualityConvention> convention;   ///< default: 8 edges, normal force 1, torque / rho of the object
-  double max_penetration = 0.001;    ///< m, of a tip's link into the object; other links stay 0.5 mm away
-  double clearance_pregrasp = 0.01;  ///< m
-  double min_distance_pose = 0.01;   ///< m, two returned grasps closer than this in palm position ...
-  double min_distance_angle = 0.2;   ///< rad ... and this in palm orientation count as one
+  double mu = 0.5;                              ///< friction coefficient, of the convention below
+  std::optional<QualityConvention> convention;  ///< default: 8 edges, normal force 1, torque / rho of the object
+  double max_penetration = 0.001;               ///< m, of a tip's link into the object; other links stay 0.5 mm away
+  double clearance_pregrasp = 0.01;             ///< m
+  double min_distance_pose = 0.01;              ///< m, two returned grasps closer than this in palm position ...
+  double min_distance_angle = 0.2;              ///< rad ... and this in palm orientation count as one
   int threads = 1;
 };
 void validate(const PrecisionSettings& settings);  ///< throws std::invalid_argument naming field, value, constraint
@@ -63,9 +63,8 @@ PrecisionTrial precision_trial(const PrecisionSearch& search, Rng& rng);
 /// `count` different ones by the goal. Deterministic for a seed whatever the thread count. hand: rooted at the palm
 /// (load_hand). An object that no hand shape spans gives no grasp, and its reasons.
 SearchResult search_precision_grasps(const robot::RobotModel& hand, const robot::Scene& scene,
-                                     const std::string& object, const SynergyGroup& group,
-                                     const SynergyBox* pre_grasp, const PrecisionSettings& settings,
-                                     std::uint64_t seed);
+                                     const std::string& object, const SynergyGroup& group, const SynergyBox* pre_grasp,
+                                     const PrecisionSettings& settings, std::uint64_t seed);
 
 /// The same with everything made by the caller, for many searches of one object.
 SearchResult search_precision_grasps(const PrecisionSearch& search, std::uint64_t seed);

@@ -7,8 +7,8 @@
 #include <memory>
 #include <vector>
 
-#include <Eigen/Dense>
 #include <nlopt.h>
+#include <Eigen/Dense>
 
 #include "core/require.hpp"
 
@@ -18,7 +18,7 @@ namespace {
 constexpr double kFarthestShift = 0.1;  // m
 constexpr double kFarthestTurn = 1.0;   // rad
 constexpr double kFeasible = 0.05;      // cm, 0.1 rad: the exact distances are closed in afterwards
-constexpr double kClosed = 2e-6;      // m
+constexpr double kClosed = 2e-6;        // m
 constexpr int kNewtonSteps = 12;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
@@ -89,8 +89,9 @@ const PrecisionValue* PrecisionRun::visit(const Eigen::VectorXd& x, bool slopes)
   last_ = x;
   last_has_slopes_ = slopes;
   const double violation = value.violation();
-  const bool finite = std::isfinite(value.quality) && std::isfinite(violation) &&
-                      (!slopes || (value.quality_slope.allFinite() && value.gap_slopes.allFinite() && value.excess_slopes.allFinite()));
+  const bool finite =
+      std::isfinite(value.quality) && std::isfinite(violation) &&
+      (!slopes || (value.quality_slope.allFinite() && value.gap_slopes.allFinite() && value.excess_slopes.allFinite()));
   last_value_ = finite ? &value : nullptr;
   if (!finite) return nullptr;
   if (violation <= kFeasible && value.quality > quality_) {
@@ -118,7 +119,8 @@ void solve(PrecisionRun& run, PrecisionProblem& problem, PrecisionSolver solver,
   nlopt_set_min_objective(optimizer.get(), nlopt_quality, &data);
   const std::vector<double> gap_tolerance(static_cast<std::size_t>(problem.gaps()), 1e-3);
   const std::vector<double> excess_tolerance(static_cast<std::size_t>(problem.excesses()), 1e-3);
-  nlopt_add_equality_mconstraint(optimizer.get(), static_cast<unsigned>(problem.gaps()), nlopt_gaps, &data, gap_tolerance.data());
+  nlopt_add_equality_mconstraint(optimizer.get(), static_cast<unsigned>(problem.gaps()), nlopt_gaps, &data,
+                                 gap_tolerance.data());
   nlopt_add_inequality_mconstraint(optimizer.get(), static_cast<unsigned>(problem.excesses()), nlopt_excess, &data,
                                    excess_tolerance.data());
   nlopt_set_lower_bounds(optimizer.get(), run.lower().data());

@@ -11,10 +11,10 @@
 namespace opponens::grasp {
 namespace {
 
-constexpr double kOnSphere = 0.001;      // m, a tip point this near to a sphere is on it
-constexpr double kFitReach = 0.010;      // m, samples that shape the fitted ball
-constexpr double kTouchReach = 0.030;    // m, samples that may touch, around the tip's centre
-constexpr double kOnSurface = 1e-7;      // m, nearer: the direction from the surface is rounding, the face decides
+constexpr double kOnSphere = 0.001;    // m, a tip point this near to a sphere is on it
+constexpr double kFitReach = 0.010;    // m, samples that shape the fitted ball
+constexpr double kTouchReach = 0.030;  // m, samples that may touch, around the tip's centre
+constexpr double kOnSurface = 1e-7;    // m, nearer: the direction from the surface is rounding, the face decides
 constexpr int kProjections = 20;
 
 /// Normal out of the object at a point at distance `gap`: the distance's gradient, the face's normal on the surface.

@@ -30,6 +30,25 @@ struct Jet {
   double value = 0.0, slope = 0.0, bend = 0.0;
 };
 
+/// The sample at the lattice's nearest point becomes the one at `beyond` from it.
+void continue_beyond(const Eigen::Vector3d& beyond, FieldSample& s) {
+  const double distance = beyond.norm();
+  if (distance == 0.0) return;
+  const Eigen::Vector3d out = beyond / distance;
+  s.value += distance;
+  for (int i = 0; i < 3; ++i) {
+    if (beyond[i] == 0.0) continue;
+    s.gradient[i] = out[i];
+    s.hessian.row(i).setZero();
+    s.hessian.col(i).setZero();
+  }
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      if (beyond[i] != 0.0 && beyond[j] != 0.0) s.hessian(i, j) = ((i == j ? 1.0 : 0.0) - out[i] * out[j]) / distance;
+    }
+  }
+}
+
 }  // namespace
 
 TipField::TipField(const DistanceGrid& grid, const Eigen::Vector3d& lower, const Eigen::Vector3d& upper, double spacing,
@@ -93,22 +112,7 @@ FieldSample TipField::query(const Eigen::Vector3d& p) const {
   s.hessian(2, 1) = s.hessian(1, 2);
   s.gradient /= spacing_;
   s.hessian /= spacing_ * spacing_;
-  const Eigen::Vector3d beyond = p - inside;
-  const double distance = beyond.norm();
-  if (distance == 0.0) return s;
-  const Eigen::Vector3d out = beyond / distance;
-  s.value += distance;
-  for (int i = 0; i < 3; ++i) {
-    if (beyond[i] == 0.0) continue;
-    s.gradient[i] = out[i];
-    s.hessian.row(i).setZero();
-    s.hessian.col(i).setZero();
-  }
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      if (beyond[i] != 0.0 && beyond[j] != 0.0) s.hessian(i, j) = ((i == j ? 1.0 : 0.0) - out[i] * out[j]) / distance;
-    }
-  }
+  continue_beyond(p - inside, s);
   return s;
 }
 

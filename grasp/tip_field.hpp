@@ -31,7 +31,7 @@ class TipField {
 
  private:
   double spacing_;
-  Eigen::Vector3d first_;         ///< node 0
+  Eigen::Vector3d first_;          ///< node 0
   Eigen::Vector3d lower_, upper_;  ///< where the spline has all its nodes
   Eigen::Vector3i count_;
   std::vector<float> nodes_;

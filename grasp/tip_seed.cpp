@@ -15,8 +15,8 @@ namespace {
 
 constexpr int kChords = 10;
 constexpr int kShapes = 12;
-constexpr double kChordTilt = 0.35;  // rad
-constexpr double kFarthest = 0.3;    // m, no hand opens that far
+constexpr double kChordTilt = 0.35;    // rad
+constexpr double kFarthest = 0.3;      // m, no hand opens that far
 constexpr double kLeastStep = 0.0005;  // m, of a march through the object
 
 struct Chord {
@@ -107,10 +107,9 @@ std::optional<HandSeed> draw_tip_seed(const PrecisionSpace& space, Rng& rng) {
   const Eigen::AngleAxisd roll(2.0 * std::numbers::pi * rng.uniform(), direction);
   HandSeed seed;
   seed.y = pinch.y;
-  seed.X_OH.linear() =
-      roll.toRotationMatrix() * Eigen::Quaterniond::FromTwoVectors(pinch.others - pinch.thumb, direction).toRotationMatrix();
-  seed.X_OH.translation() =
-      0.5 * (chord->from + chord->to) - seed.X_OH.linear() * (0.5 * (pinch.thumb + pinch.others));
+  seed.X_OH.linear() = roll.toRotationMatrix() *
+                       Eigen::Quaterniond::FromTwoVectors(pinch.others - pinch.thumb, direction).toRotationMatrix();
+  seed.X_OH.translation() = 0.5 * (chord->from + chord->to) - seed.X_OH.linear() * (0.5 * (pinch.thumb + pinch.others));
   return seed;
 }
 

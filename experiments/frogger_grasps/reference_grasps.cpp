@@ -16,7 +16,8 @@ using nlohmann::json;
 Eigen::Isometry3d read_pose(const json& rows) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   for (int r = 0; r < 3; ++r) {
-    for (int c = 0; c < 4; ++c) pose.matrix()(r, c) = rows.at(static_cast<std::size_t>(r)).at(static_cast<std::size_t>(c));
+    for (int c = 0; c < 4; ++c)
+      pose.matrix()(r, c) = rows.at(static_cast<std::size_t>(r)).at(static_cast<std::size_t>(c));
   }
   // Written with eight digits: the rotation is brought back to an orthonormal one.
   pose.linear() = Eigen::Quaterniond(pose.linear()).normalized().toRotationMatrix();
@@ -57,6 +58,10 @@ ReferenceFile read_reference(const std::filesystem::path& file) {
     reference.collision_tolerance = options.at("tol_col");
     reference.joint_tolerance = options.at("tol_joint");
     reference.table_z = -read_pose(document.at("X_world_object")).translation().z();
+    for (int i = 0; i < 3; ++i) {
+      reference.lower[i] = document.at("aabb_object").at(0).at(static_cast<std::size_t>(i));
+      reference.upper[i] = document.at("aabb_object").at(1).at(static_cast<std::size_t>(i));
+    }
     for (const json& value : document.at("grasps")) {
       ++reference.tried;
       if (value.at("min_weight_metric_l").is_null()) continue;  // timed out

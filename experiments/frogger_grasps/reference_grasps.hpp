@@ -17,7 +17,7 @@ struct ReferenceGrasp {
   int index = 0;
   double min_weight = 0.0;
   double epsilon = 0.0;
-  double seconds = 0.0;           ///< published, on their hardware, failures included
+  double seconds = 0.0;            ///< published, on their hardware, failures included
   double surface_violation = 0.0;  ///< m
   double collision_violation = 0.0;
   double joint_violation = 0.0;
@@ -30,12 +30,14 @@ struct ReferenceFile {
   std::string method;  ///< frogger, baseline_fc, fccorr16
   double mu = 0.0;
   int edges = 0;
-  double depth = 0.0;             ///< m, d_pen: how deep a tip may be
+  double depth = 0.0;              ///< m, d_pen: how deep a tip may be
   double surface_tolerance = 0.0;  ///< m
   double collision_tolerance = 0.0;
-  double joint_tolerance = 0.0;  ///< rad
-  double table_z = 0.0;          ///< m, in O: the table top is at z = 0 of the world
-  int tried = 0;                 ///< grasps in the file, timed out ones included
+  double joint_tolerance = 0.0;                     ///< rad
+  double table_z = 0.0;                             ///< m, in O: the table top is at z = 0 of the world
+  Eigen::Vector3d lower = Eigen::Vector3d::Zero();  ///< m, bounding box of the mesh that they used
+  Eigen::Vector3d upper = Eigen::Vector3d::Zero();
+  int tried = 0;  ///< grasps in the file, timed out ones included
   std::vector<ReferenceGrasp> valid;
 };
 
