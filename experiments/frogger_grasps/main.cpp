@@ -68,6 +68,7 @@ int run(const Options& options, bool reproducing) {
   grasp::PrecisionSettings& settings = comparison.settings;
   settings.count = 1;
   settings.enough = options.enough;
+  settings.max_trials = 200;
   settings.goal = options.goal == "epsilon" ? grasp::PrecisionGoal::epsilon : grasp::PrecisionGoal::min_weight;
   // A fixed point leaves its ball 3 mm of depth, as theirs; a ball that touches anywhere needs none.
   settings.tips = options.tips == "point" ? grasp::TipModel::fixed_point : grasp::TipModel::ball;
