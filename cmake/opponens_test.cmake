@@ -16,6 +16,9 @@ function(opponens_test name)
   endif()
   add_executable(${name} ${ARG_SOURCES})
   opponens_compile_options(${name})
+  # What is tested, the libraries, keeps its own optimisation.
+  separate_arguments(options UNIX_COMMAND "${OPPONENS_TEST_OPTIONS}")
+  target_compile_options(${name} PRIVATE ${options})
   target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} GTest::gtest_main)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
   target_compile_definitions(${name} PRIVATE

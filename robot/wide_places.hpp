@@ -135,21 +135,21 @@ struct SingleScratch {
 [[gnu::always_inline]] inline void transpose(V (&v)[kLanes]) {
   V pairs[kLanes];
   for (int k = 0; k < 4; ++k) {
-    pairs[2 * k] = __builtin_shuffle(v[2 * k], v[2 * k + 1], Bits{0, 8, 1, 9, 4, 12, 5, 13});
-    pairs[2 * k + 1] = __builtin_shuffle(v[2 * k], v[2 * k + 1], Bits{2, 10, 3, 11, 6, 14, 7, 15});
+    pairs[2 * k] = __builtin_shufflevector(v[2 * k], v[2 * k + 1], 0, 8, 1, 9, 4, 12, 5, 13);
+    pairs[2 * k + 1] = __builtin_shufflevector(v[2 * k], v[2 * k + 1], 2, 10, 3, 11, 6, 14, 7, 15);
   }
   V fours[kLanes];
   for (int k = 0; k < 2; ++k) {
     for (int i = 0; i < 2; ++i) {
       const V& low = pairs[4 * k + i];
       const V& high = pairs[4 * k + 2 + i];
-      fours[4 * k + 2 * i] = __builtin_shuffle(low, high, Bits{0, 1, 8, 9, 4, 5, 12, 13});
-      fours[4 * k + 2 * i + 1] = __builtin_shuffle(low, high, Bits{2, 3, 10, 11, 6, 7, 14, 15});
+      fours[4 * k + 2 * i] = __builtin_shufflevector(low, high, 0, 1, 8, 9, 4, 5, 12, 13);
+      fours[4 * k + 2 * i + 1] = __builtin_shufflevector(low, high, 2, 3, 10, 11, 6, 7, 14, 15);
     }
   }
   for (int i = 0; i < 4; ++i) {
-    v[i] = __builtin_shuffle(fours[i], fours[4 + i], Bits{0, 1, 2, 3, 8, 9, 10, 11});
-    v[4 + i] = __builtin_shuffle(fours[i], fours[4 + i], Bits{4, 5, 6, 7, 12, 13, 14, 15});
+    v[i] = __builtin_shufflevector(fours[i], fours[4 + i], 0, 1, 2, 3, 8, 9, 10, 11);
+    v[4 + i] = __builtin_shufflevector(fours[i], fours[4 + i], 4, 5, 6, 7, 12, 13, 14, 15);
   }
 }
 

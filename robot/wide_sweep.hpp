@@ -189,16 +189,16 @@ struct Output {
 [[gnu::always_inline]] inline V least_of_each(const V (&v)[kLanes]) {
   V pairs[4];
   for (int k = 0; k < 4; ++k) {
-    pairs[k] = lesser(__builtin_shuffle(v[2 * k], v[2 * k + 1], Bits{0, 8, 2, 10, 4, 12, 6, 14}),
-                      __builtin_shuffle(v[2 * k], v[2 * k + 1], Bits{1, 9, 3, 11, 5, 13, 7, 15}));
+    pairs[k] = lesser(__builtin_shufflevector(v[2 * k], v[2 * k + 1], 0, 8, 2, 10, 4, 12, 6, 14),
+                      __builtin_shufflevector(v[2 * k], v[2 * k + 1], 1, 9, 3, 11, 5, 13, 7, 15));
   }
   V fours[2];
   for (int k = 0; k < 2; ++k) {
-    fours[k] = lesser(__builtin_shuffle(pairs[2 * k], pairs[2 * k + 1], Bits{0, 1, 8, 9, 4, 5, 12, 13}),
-                      __builtin_shuffle(pairs[2 * k], pairs[2 * k + 1], Bits{2, 3, 10, 11, 6, 7, 14, 15}));
+    fours[k] = lesser(__builtin_shufflevector(pairs[2 * k], pairs[2 * k + 1], 0, 1, 8, 9, 4, 5, 12, 13),
+                      __builtin_shufflevector(pairs[2 * k], pairs[2 * k + 1], 2, 3, 10, 11, 6, 7, 14, 15));
   }
-  return lesser(__builtin_shuffle(fours[0], fours[1], Bits{0, 1, 2, 3, 8, 9, 10, 11}),
-                __builtin_shuffle(fours[0], fours[1], Bits{4, 5, 6, 7, 12, 13, 14, 15}));
+  return lesser(__builtin_shufflevector(fours[0], fours[1], 0, 1, 2, 3, 8, 9, 10, 11),
+                __builtin_shufflevector(fours[0], fours[1], 4, 5, 6, 7, 12, 13, 14, 15));
 }
 
 [[gnu::always_inline]] inline const V& coordinate(const V3& p, int axis) {

@@ -7,7 +7,7 @@ set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
 install_packages
-configure_and_build release -DOPPONENS_TESTS=OFF -DOPPONENS_EXAMPLES=OFF
+configure_and_build release all -DOPPONENS_TESTS=OFF -DOPPONENS_EXAMPLES=OFF
 say "Running the demonstration"
 cd "$ROOT"
 exec build/release/cli/opponens demo "$@"

@@ -36,12 +36,13 @@ install_packages() {
   "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends $missing
 }
 
-# configure_and_build PRESET [cmake options...]
+# configure_and_build PRESET TARGET [cmake options...]
 configure_and_build() {
-  local preset="$1"
-  shift
+  local preset="$1" target="$2"
+  shift 2
   say "Building ($preset, $(nproc) cores, compiler cache $(ccache --get-config cache_dir))"
-  (cd "$ROOT" && cmake --preset "$preset" "$@" --log-level=WARNING && cmake --build --preset "$preset" -j "$(nproc)")
+  (cd "$ROOT" && cmake --preset "$preset" "$@" --log-level=WARNING &&
+    cmake --build --preset "$preset" --target "$target" -j "$(nproc)")
 }
 
 if [ "${BASH_SOURCE[0]}" = "$0" ]; then

@@ -20,9 +20,9 @@ run_tests() {  # PRESET ctest-options...
   (cd "$ROOT/build/$preset" && ctest --output-on-failure --no-tests=error -j "$(nproc)" "$@") | without_passed
 }
 
-# One target on its seeds and on what they grow to; what makes it fail is left in build/fuzz.
+# One target on its seeds and on what they grow to; what makes it fail is left in build/sanitize/fuzz.
 fuzz_one() {  # SECONDS TARGET
-  local name build="$ROOT/build/fuzz"
+  local name build="$ROOT/build/sanitize/fuzz"
   name="$(basename "$2" _fuzz)"
   "$2" -max_total_time="$1" -timeout=20 -rss_limit_mb=2048 -max_len=4096 -print_final_stats=1 \
     -artifact_prefix="$build/$name-" "$build/corpus/$name" >"$build/$name.log" 2>&1 ||
@@ -32,10 +32,10 @@ fuzz_one() {  # SECONDS TARGET
 
 run_fuzzers() {  # SECONDS
   say "Fuzzing ($1 s each)"
-  /usr/bin/python3 "$ROOT/tests/fuzz/make_corpus.py" "$ROOT/build/fuzz/corpus"
+  /usr/bin/python3 "$ROOT/tests/fuzz/make_corpus.py" "$ROOT/build/sanitize/fuzz/corpus"
   export ROOT
   export -f fuzz_one
-  printf '%s\n' "$ROOT"/build/fuzz/tests/fuzz/*_fuzz | xargs -n 1 -P "$(nproc)" bash -c 'fuzz_one "$@"' fuzz "$1"
+  printf '%s\n' "$ROOT"/build/sanitize/tests/fuzz/*_fuzz | xargs -n 1 -P "$(nproc)" bash -c 'fuzz_one "$@"' fuzz "$1"
 }
 
 part="${1:-all}"
@@ -44,21 +44,26 @@ case "$part" in
   *) echo "usage: scripts/test.sh [all|release|sanitize|fuzz [SECONDS]]" >&2; exit 2 ;;
 esac
 
+# Under the sanitizers without the install test, the long flows, whole grasp searches and simulations of statistics, which
+# belong to the release build. Compiled by Clang, which takes half of GCC's time for it, and libFuzzer is Clang's: one
+# build serves both. Without -Werror: the release build holds to GCC's warnings.
+# UBSan without null and object-size, which ASan sees, and alignment; the readers of outside bytes have them too.
+sanitize_build() {  # TARGET
+  configure_and_build sanitize "$1" -DOPPONENS_WERROR=OFF -DOPPONENS_TESTS=ON -DOPPONENS_EXAMPLES=OFF
+}
+
 install_packages
 if [ "$part" = all ] || [ "$part" = release ]; then
-  configure_and_build release -DOPPONENS_WERROR=ON -DOPPONENS_TESTS=ON -DOPPONENS_EXAMPLES=ON
+  configure_and_build release all -DOPPONENS_WERROR=ON -DOPPONENS_TESTS=ON -DOPPONENS_EXAMPLES=ON
   run_tests release
 fi
 if [ "$part" = all ] || [ "$part" = sanitize ]; then
-  # The install test, the long flows, whole grasp searches and simulations of statistics belong to the release build.
-  # UBSan without null and object-size, which ASan sees, and alignment: they double the time to compile Eigen.
-  # No -Werror here: GCC 12's sanitizers raise false alarms of uninitialised use in the standard library.
-  configure_and_build sanitize -DOPPONENS_WERROR=OFF -DOPPONENS_TESTS=ON -DOPPONENS_EXAMPLES=OFF
+  sanitize_build all
   export LSAN_OPTIONS="suppressions=$ROOT/tests/support/lsan.supp:print_suppressions=0"
   run_tests sanitize -LE release_only
 fi
 if [ "$part" = all ] || [ "$part" = fuzz ]; then
-  configure_and_build fuzz
+  sanitize_build fuzzers
   run_fuzzers "${2:-5}"
 fi
 say "All tests passed"
