@@ -14,6 +14,7 @@
 #include "cli/stored.hpp"
 #include "cli/world.hpp"
 #include "core/require.hpp"
+#include "grasp/free_joints.hpp"
 #include "grasp/given_grasps.hpp"
 #include "grasp/grasp_search.hpp"
 #include "grasp/robust_quality.hpp"
@@ -72,6 +73,7 @@ struct Task {
   const Stored<SynergySet>& synergies;
   const Reach& reach;
   grasp::SearchSettings settings;
+  const grasp::SearchWorld& search_world;
   storage::Store& store;
 };
 
@@ -151,12 +153,12 @@ void say_found(const Task& task, const std::string& what, const grasp::SearchRes
   task.console.say(line);
 }
 
-void search_group(const Task& task, const SynergyGroup& group, const std::vector<SynergyGroup>& named,
-                  GraspTally& tally) {
+void search_group(const Task& task, const SynergyGroup& group, const SynergyBox& pre_grasp,
+                  const std::vector<SynergyGroup>& named, GraspTally& tally) {
   Progress progress(task.console, "grasps of " + group.name);
   grasp::SearchResult found = grasp::search_grasps(
-      task.world.hand, task.world.scene, task.world.object, group, task.synergies.value.pre_grasp.box, task.settings,
-      task.options.common.seed, [&task](Grasp& candidate) { return task.reach(candidate); },
+      task.search_world, group, pre_grasp, task.settings, task.options.common.seed,
+      [&task](Grasp& candidate) { return task.reach(candidate); },
       [&progress](std::int64_t done, std::int64_t total) { progress.update(done, total); });
   if (task.options.free_joints) {  // what a free grasp is along the groups that there are
     for (Grasp& one : found.grasps) {
@@ -239,7 +241,8 @@ int grasp(const GraspOptions& options, const Console& console) {
   const Reach reach(world, options.max_penetration);
   const auto warnings = warnings_of(world, reach.checker());
   for (const auto& warning : warnings) console.advise(warning);
-  const Task task{options, console, world, synergies, reach, search_settings(options, threads), store};
+  const grasp::SearchWorld search_world = grasp::make_search_world(world.hand, world.scene, world.object, threads);
+  const Task task{options, console, world, synergies, reach, search_settings(options, threads), search_world, store};
   GraspTally tally;
   if (const auto far = out_of_reach(world)) {
     console.say(*far);
@@ -249,9 +252,10 @@ int grasp(const GraspOptions& options, const Console& console) {
   if (!options.import.empty()) {
     import_file(task, groups, tally);
   } else if (options.free_joints) {
-    search_group(task, free_joints_group(world.hand), groups, tally);
+    const grasp::FreeJoints free = grasp::free_joints(world.hand);
+    search_group(task, free.group, free.pre_grasp, groups, tally);
   } else {
-    for (const auto& group : groups) search_group(task, group, groups, tally);
+    for (const auto& group : groups) search_group(task, group, synergies.value.pre_grasp.box, groups, tally);
   }
   return finish(task, tally, log, warnings);
 }

@@ -62,16 +62,4 @@ std::vector<SynergyGroup> chosen_groups(const SynergySet& set, const GraspOption
   return groups;
 }
 
-SynergyGroup free_joints_group(const robot::RobotModel& hand) {
-  SynergyGroup group;
-  group.name = "free joints";
-  group.phase = "grasp";
-  group.dof_effective = hand.dof();
-  group.box.center = 0.5 * (hand.lower() + hand.upper());
-  group.box.half_width = 0.5 * (hand.upper() - hand.lower());
-  group.box.axes = Eigen::MatrixXd::Identity(hand.dof(), hand.dof());
-  group.box.scale = Eigen::VectorXd::Ones(hand.dof());
-  return group;
-}
-
 }  // namespace opponens::cli

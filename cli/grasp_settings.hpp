@@ -8,7 +8,6 @@
 #include "cli/json.hpp"
 #include "core/synergies.hpp"
 #include "grasp/grasp_search.hpp"
-#include "robot/robot_model.hpp"
 
 namespace opponens::cli {
 
@@ -20,8 +19,5 @@ Json settings_json(const GraspOptions& options);
 
 /// The groups that --group names. Throws InputError when there is none, or one without synergies is to be searched.
 std::vector<SynergyGroup> chosen_groups(const SynergySet& set, const GraspOptions& options);
-
-/// A group named "free joints" whose box is all that the joint limits allow, one axis per joint.
-SynergyGroup free_joints_group(const robot::RobotModel& hand);
 
 }  // namespace opponens::cli

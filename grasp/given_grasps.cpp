@@ -8,6 +8,7 @@
 
 #include "analysis/synergy_box.hpp"
 #include "core/require.hpp"
+#include "grasp/certificate.hpp"
 #include "grasp/grasp_check.hpp"
 #include "grasp/grasp_target.hpp"
 #include "grasp/hand_surface.hpp"
@@ -74,6 +75,8 @@ GivenGrasp check_one(const Checks& checks, const HandPose& given, const Accept& 
   grasp.X_OH_pregrasp = pregrasp->X_OH;
   grasp.origin = GraspOrigin::imported;
   describe_along(group, settings.slack_bound, grasp);
+  grasp.certificate = certify(grasp.contacts, grasp.quality);
+  if (!grasp.certificate) return {std::nullopt, "closure cannot be certified"};
   std::string reason = accept ? accept(grasp) : std::string();
   if (!reason.empty()) return {std::nullopt, std::move(reason)};
   return {std::move(grasp), {}};

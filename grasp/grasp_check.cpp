@@ -68,14 +68,14 @@ std::string nearest_obstacle(const ClosingScene& scene, const HandPose& pose) {
   double least = std::numeric_limits<double>::infinity();
   std::string name;
   for (const Obstacle& obstacle : scene.target.obstacles) {
+    const auto distance = [&](const Eigen::Vector3d& p_B) { return obstacle.distance.query(p_B, 1.0).value; };
     for (std::size_t link = 0; link < X_HL.size(); ++link) {
-      const Eigen::Isometry3d X_BL = obstacle.X_BO * pose.X_OH * X_HL[link];
-      for (const Eigen::Vector3d& p_L : scene.surface.medium[link]) {
-        const double distance = obstacle.distance.query(X_BL * p_L, kObstacleClearance).value;
-        if (distance >= least) continue;
-        least = distance;
-        name = obstacle.name;
-      }
+      scene.surface.shapes[link]->points.descend(distance, obstacle.X_BO * pose.X_OH * X_HL[link], least,
+                                                 [&](const Eigen::Vector3d&, const Eigen::Vector3d& p_B) {
+                                                   const double here = distance(p_B);
+                                                   if (here < least) name = obstacle.name;
+                                                   return least = std::min(least, here);
+                                                 });
     }
   }
   return name;

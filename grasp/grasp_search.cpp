@@ -14,7 +14,10 @@
 #include "analysis/synergy_box.hpp"
 #include "core/require.hpp"
 #include "core/rng.hpp"
+#include "grasp/certificate.hpp"
 #include "grasp/close_hand.hpp"
+#include "grasp/distinct_grasps.hpp"
+#include "grasp/given_grasps.hpp"
 #include "grasp/grasp_check.hpp"
 #include "grasp/grasp_objective.hpp"
 #include "grasp/grasp_target.hpp"
@@ -36,86 +39,125 @@ struct Trial {
 
 /// Everything a trial reads; made once.
 struct Search {
-  const robot::RobotModel& hand;
+  const SearchWorld& world;
   const SynergyGroup& group;
   const SynergyBox& pre_grasp;
   const SearchSettings& settings;
   const Accept& accept;
   std::uint64_t seed;
-  GraspTarget target;
-  HandSurface surface;
   Eigen::VectorXd direction;
-  HandCheckers checkers;
 };
 
 QualityConvention convention_of(const Search& search) {
   QualityConvention convention;
   convention.mu = search.settings.mu;
   convention.edges = search.settings.edges;
-  convention.rho = search.target.rho;
-  convention.origin = search.target.center_of_mass;
+  convention.rho = search.world.target.rho;
+  convention.origin = search.world.target.center_of_mass;
   return convention;
 }
 
 Grasp describe(const Search& search, const HandPose& closed, const HandPose& pregrasp, std::vector<Contact> contacts,
                GraspQuality quality) {
-  const SynergyBox& box = search.group.box;
   Grasp grasp;
-  grasp.group = search.group.name;
-  grasp.coefficients = analysis::coordinates(box, closed.q).cwiseMax(-box.half_width).cwiseMin(box.half_width);
-  grasp.slack = closed.q - analysis::configuration(box, grasp.coefficients);
   grasp.q_grasp = closed.q;
   grasp.q_pregrasp = pregrasp.q;
   grasp.X_OH = closed.X_OH;
   grasp.X_OH_pregrasp = pregrasp.X_OH;
   grasp.contacts = std::move(contacts);
   grasp.quality = std::move(quality);
-  grasp.synergy_grasp = grasp.slack.norm() <= search.settings.slack_bound;
+  describe_along(search.group, search.settings.slack_bound, grasp);
   return grasp;
 }
 
-Trial run_trial(const Search& search, std::int64_t index) {
-  Rng rng = stream(search.seed, "grasp/" + search.group.name + "/" + std::to_string(index));
-  GraspObjective objective(search.hand, search.surface, search.target, search.group.box);
-  const auto seed = best_seed({search.hand, search.surface, search.target, search.group.box}, objective, rng);
-  if (!seed) return {std::nullopt, "no seed pose with a clear palm", objective.evaluations()};
-  const HandSeed best = optimize_seed(objective, *seed, search.group.box.half_width, kMaxEvaluations);
-  const auto rejected = [&](std::string reason) {
-    return Trial{std::nullopt, std::move(reason), objective.evaluations()};
-  };
-  const ClosingScene scene{search.hand, search.surface, search.target, search.group.box, search.direction};
-  const auto closed = close_hand(scene, {best.X_OH, analysis::configuration(search.group.box, best.y)});
-  if (!closed) return rejected("cannot be freed from the object");
+/// From a hand near the object to a grasp better than `incumbent` (an epsilon), or the reason why it is none.
+Trial attempt(const Search& search, const HandPose& start, double incumbent) {
+  const auto rejected = [](std::string reason) { return Trial{std::nullopt, std::move(reason)}; };
+  const SearchWorld& world = search.world;
   const SearchSettings& settings = search.settings;
+  const ClosingScene scene{world.hand, world.surface, world.target, search.group.box, search.direction};
+  const auto closed = close_hand(scene, start);
+  if (!closed) return rejected("cannot be freed from the object");
   std::vector<Contact> contacts = find_contacts(scene, *closed, settings.contact_tolerance, settings.mu);
   if (contacts.size() < 3) return rejected("fewer than three contacts");
-  GraspQuality quality = evaluate(contacts, convention_of(search));
+  QualityRequest request;
+  if (incumbent > 0.0) request.at_least = incumbent;
+  GraspQuality quality = evaluate(contacts, convention_of(search), request);
+  if (quality.state == ClosureState::below_incumbent) return rejected("no better");
   if (!quality.force_closure()) return rejected("not force closure");
   if (!quality.epsilon) return rejected("epsilon did not converge");  // grasps are ranked by it
-  GraspLimits limits{std::vector<bool>(search.hand.links().size(), false), settings.max_penetration,
+  if (*quality.epsilon <= incumbent) return rejected("no better");
+  GraspLimits limits{std::vector<bool>(world.hand.links().size(), false), settings.max_penetration,
                      settings.clearance_pregrasp};
-  for (const Contact& contact : contacts) limits.touching[search.hand.link_index(contact.link)] = true;
-  const std::string fault = posture_fault(scene, search.checkers, *closed, limits);
+  for (const Contact& contact : contacts) limits.touching[world.hand.link_index(contact.link)] = true;
+  const std::string fault = posture_fault(scene, world.checkers, *closed, limits);
   if (!fault.empty()) return rejected(fault);
-  const auto pregrasp = find_pregrasp(scene, search.checkers, search.pre_grasp, *closed, limits);
+  const auto pregrasp = find_pregrasp(scene, world.checkers, search.pre_grasp, *closed, limits);
   if (!pregrasp) return rejected("no clear pre-grasp");
   Grasp grasp = describe(search, *closed, *pregrasp, std::move(contacts), std::move(quality));
+  grasp.certificate = certify(grasp.contacts, grasp.quality);
+  if (!grasp.certificate) return rejected("closure cannot be certified");
   if (search.accept) {
     const std::string reason = search.accept(grasp);
     if (!reason.empty()) return rejected(reason);
   }
-  return {std::move(grasp), {}, objective.evaluations()};
+  return {std::move(grasp), {}};
 }
 
-/// Runs trials [first, first + count) on the settings' threads; results in trial order whatever the thread count.
-std::vector<Trial> run_batch(const Search& search, std::int64_t first, int count) {
-  std::vector<Trial> trials(static_cast<std::size_t>(count));
+Trial run_trial(const Search& search, std::int64_t index) {
+  Rng rng = stream(search.seed, "grasp/" + search.group.name + "/" + std::to_string(index));
+  const SearchWorld& world = search.world;
+  const SynergyBox& box = search.group.box;
+  GraspObjective objective(world.hand, world.surface, world.target, box);
+  const auto seed = best_seed({world.hand, world.surface, world.target, box}, objective, rng);
+  if (!seed) return {std::nullopt, "no seed pose with a clear palm", objective.evaluations()};
+  const HandSeed best = optimize_seed(objective, *seed, box.half_width, kMaxEvaluations);
+  Trial trial = attempt(search, {best.X_OH, analysis::configuration(box, best.y)}, 0.0);
+  trial.evaluations = objective.evaluations();
+  return trial;
+}
+
+/// A hand near a grasp: palm and synergy coordinates changed by normal deviates, `scale` times 8 mm, 0.12 rad and a
+/// quarter of the box's half widths; what the grasp has beside its synergies stays.
+HandPose neighbour(const Search& search, const Grasp& grasp, double scale, Rng& rng) {
+  const SynergyBox& box = search.group.box;
+  const auto deviate = [&] { return Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal()); };
+  const Eigen::Vector3d shift = 0.008 * scale * deviate();
+  const Eigen::Vector3d turn = 0.12 * scale * deviate();
+  Eigen::VectorXd y(box.half_width.size());
+  for (Eigen::Index i = 0; i < y.size(); ++i) y[i] = 0.25 * scale * box.half_width[i] * rng.normal();
+  HandPose pose{grasp.X_OH, grasp.q_grasp + box.scale.cwiseProduct(box.axes * y)};
+  const Eigen::Vector3d palm = grasp.X_OH * search.world.surface.palm_center;
+  const Eigen::Matrix3d rotation = Eigen::AngleAxisd(turn.norm(), turn.stableNormalized()).toRotationMatrix();
+  pose.X_OH.linear() = rotation * grasp.X_OH.linear();
+  pose.X_OH.translation() = palm + shift + rotation * (grasp.X_OH.translation() - palm);
+  return pose;
+}
+
+/// Random ascent from a grasp: closes from neighbouring starts and keeps what is better; the neighbourhood grows where
+/// that succeeds and shrinks where it does not (the 1/5 rule, Rechenberg 1973). A grasp along the synergies is left
+/// only for another.
+Grasp improve(const Search& search, Grasp grasp, std::size_t rank) {
+  Rng rng = stream(search.seed, "improve/" + search.group.name + "/" + std::to_string(rank));
+  double scale = 1.0;
+  for (int i = 0; i < search.settings.improvements; ++i) {
+    const HandPose start = neighbour(search, grasp, scale, rng);
+    Trial trial = attempt(search, start, grasp.quality.epsilon.value());
+    const bool kept = trial.grasp && (trial.grasp->synergy_grasp || !grasp.synergy_grasp);
+    if (kept) grasp = std::move(*trial.grasp);
+    scale = std::clamp(scale * (kept ? 1.5 : 0.9), 0.1, 1.5);
+  }
+  return grasp;
+}
+
+/// work(i) for i in [0, count) on the settings' threads, in any order.
+void in_parallel(int threads, int count, const std::function<void(int)>& work) {
   std::atomic<int> next{0};
   std::mutex guard;
   std::exception_ptr error;
-  const auto work = [&] {
+  const auto run = [&] {
     try {
-      for (int i = next++; i < count; i = next++) trials[static_cast<std::size_t>(i)] = run_trial(search, first + i);
+      for (int i = next++; i < count; i = next++) work(i);
     } catch (...) {
       const std::lock_guard lock(guard);
       if (!error) error = std::current_exception();
@@ -124,34 +166,38 @@ std::vector<Trial> run_batch(const Search& search, std::int64_t first, int count
   };
   {
     std::vector<std::jthread> workers;
-    for (int t = 1; t < search.settings.threads; ++t) workers.emplace_back(work);
-    work();
+    for (int t = 1; t < threads; ++t) workers.emplace_back(run);
+    run();
   }
   if (error) std::rethrow_exception(error);
+}
+
+/// Runs trials [first, first + count); results in trial order whatever the thread count.
+std::vector<Trial> run_batch(const Search& search, std::int64_t first, int count) {
+  std::vector<Trial> trials(static_cast<std::size_t>(count));
+  in_parallel(search.settings.threads, count,
+              [&](int i) { trials[static_cast<std::size_t>(i)] = run_trial(search, first + i); });
   return trials;
 }
 
-bool similar(const Grasp& a, const Grasp& b, const SearchSettings& settings) {
-  const Eigen::AngleAxisd turn(a.X_OH.linear().transpose() * b.X_OH.linear());
-  return (a.X_OH.translation() - b.X_OH.translation()).norm() < settings.min_distance_pose &&
-         std::abs(turn.angle()) < settings.min_distance_angle;
-}
-
-/// Indices of the candidates to return: best first, each different from the better ones.
-std::vector<std::size_t> choose(const std::vector<Grasp>& candidates, const SearchSettings& settings) {
-  std::vector<std::size_t> order(candidates.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return candidates[a].quality.epsilon.value() > candidates[b].quality.epsilon.value();
-  });
-  std::vector<std::size_t> chosen;
-  for (const std::size_t i : order) {
-    const bool repeats = std::any_of(chosen.begin(), chosen.end(), [&](std::size_t better) {
-      return similar(candidates[better], candidates[i], settings);
+/// The best different ones, each taken uphill, and the best different ones of those.
+std::vector<Grasp> refined(const Search& search, std::vector<Grasp> candidates) {
+  const SearchSettings& settings = search.settings;
+  const int starts = settings.improvements > 0 ? 2 * settings.count : settings.count;
+  const std::vector<std::size_t> chosen = distinct_grasps(candidates, starts, settings.distances);
+  std::vector<Grasp> grasps;
+  for (const std::size_t i : chosen) grasps.push_back(std::move(candidates[i]));
+  if (settings.improvements > 0) {
+    in_parallel(settings.threads, static_cast<int>(grasps.size()), [&](int i) {
+      Grasp& grasp = grasps[static_cast<std::size_t>(i)];
+      grasp = improve(search, std::move(grasp), static_cast<std::size_t>(i));
     });
-    if (!repeats && chosen.size() < static_cast<std::size_t>(settings.count)) chosen.push_back(i);
   }
-  return chosen;
+  std::vector<Grasp> best;
+  for (const std::size_t i : distinct_grasps(grasps, settings.count, settings.distances)) {
+    best.push_back(std::move(grasps[i]));
+  }
+  return best;
 }
 
 void check_shapes(const robot::RobotModel& hand, const SynergyGroup& group, const SynergyBox& pre_grasp) {
@@ -179,28 +225,31 @@ void validate(const SearchSettings& s) {
   check(s.contact_tolerance > 0.0, "contact_tolerance", s.contact_tolerance, "positive");
   check(s.clearance_pregrasp >= 0.0, "clearance_pregrasp", s.clearance_pregrasp, "not negative");
   check(s.slack_bound >= 0.0, "slack_bound", s.slack_bound, "not negative");
-  check(s.min_distance_pose >= 0.0, "min_distance_pose", s.min_distance_pose, "not negative");
-  check(s.min_distance_angle >= 0.0, "min_distance_angle", s.min_distance_angle, "not negative");
+  check(s.improvements >= 0, "improvements", s.improvements, "not negative");
+  validate(s.distances);
   check(s.threads > 0, "threads", s.threads, "positive");
+}
+
+SearchWorld make_search_world(const robot::RobotModel& hand, const robot::Scene& scene, const std::string& object,
+                              int threads) {
+  return {hand, make_target(scene, object, threads), hand_surface(hand, 0.5 * (hand.lower() + hand.upper())),
+          hand_checkers(hand, scene, object)};
 }
 
 SearchResult search_grasps(const robot::RobotModel& hand, const robot::Scene& scene, const std::string& object,
                            const SynergyGroup& group, const SynergyBox& pre_grasp, const SearchSettings& settings,
-                           std::uint64_t seed, const Accept& accept,
-                           const std::function<void(std::int64_t done, std::int64_t total)>& progress) {
+                           std::uint64_t seed, const Accept& accept, const SearchProgress& progress) {
   validate(settings);
-  check_shapes(hand, group, pre_grasp);
-  const Eigen::VectorXd mean = hand.clip(group.box.scale.cwiseProduct(group.box.center));
-  const Search search{hand,
-                      group,
-                      pre_grasp,
-                      settings,
-                      accept,
-                      seed,
-                      make_target(scene, object, settings.threads),
-                      hand_surface(hand, mean),
-                      closing_direction(group.box, pre_grasp),
-                      hand_checkers(hand, scene, object)};
+  return search_grasps(make_search_world(hand, scene, object, settings.threads), group, pre_grasp, settings, seed,
+                       accept, progress);
+}
+
+SearchResult search_grasps(const SearchWorld& world, const SynergyGroup& group, const SynergyBox& pre_grasp,
+                           const SearchSettings& settings, std::uint64_t seed, const Accept& accept,
+                           const SearchProgress& progress) {
+  validate(settings);
+  check_shapes(world.hand, group, pre_grasp);
+  const Search search{world, group, pre_grasp, settings, accept, seed, closing_direction(group.box, pre_grasp)};
   SearchResult result;
   std::vector<Grasp> candidates;
   while (result.trials < settings.max_trials) {
@@ -216,14 +265,15 @@ SearchResult search_grasps(const robot::RobotModel& hand, const robot::Scene& sc
     result.trials += count;
     if (progress) progress(result.trials, settings.max_trials);
     if (result.trials >= settings.min_trials &&
-        choose(candidates, settings).size() == static_cast<std::size_t>(settings.count)) {
+        distinct_grasps(candidates, settings.count, settings.distances).size() ==
+            static_cast<std::size_t>(settings.count)) {
       break;
     }
   }
-  const std::vector<std::size_t> chosen = choose(candidates, settings);
-  for (const std::size_t i : chosen) result.grasps.push_back(std::move(candidates[i]));
-  if (candidates.size() > chosen.size()) {
-    result.rejected["a better one was kept"] = static_cast<std::int64_t>(candidates.size() - chosen.size());
+  const std::size_t found = candidates.size();
+  result.grasps = refined(search, std::move(candidates));
+  if (found > result.grasps.size()) {
+    result.rejected["a better one was kept"] = static_cast<std::int64_t>(found - result.grasps.size());
   }
   return result;
 }

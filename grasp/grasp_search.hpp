@@ -11,7 +11,10 @@
 
 #include "core/grasp.hpp"
 #include "core/synergies.hpp"
-#include "robot/mesh_distance.hpp"
+#include "grasp/distinct_grasps.hpp"
+#include "grasp/grasp_check.hpp"
+#include "grasp/grasp_target.hpp"
+#include "grasp/hand_surface.hpp"
 #include "robot/robot_model.hpp"
 #include "robot/scene.hpp"
 
@@ -28,8 +31,8 @@ struct SearchSettings {
   double contact_tolerance = 0.001;  ///< m, a contact point closer than this to the surface touches
   double clearance_pregrasp = 0.01;  ///< m, least distance hand-object at the pre-grasp
   double slack_bound = 0.3;          ///< rad, 2-norm of a synergy grasp's slack (docs/deviations.md, 6)
-  double min_distance_pose = 0.01;   ///< m, two returned grasps closer than this in palm position ...
-  double min_distance_angle = 0.2;   ///< rad ... and this in palm orientation count as one
+  int improvements = 30;             ///< closings from neighbouring poses of each of the best 2 count grasps
+  GraspDistances distances;          ///< of returned grasps from each other
   int threads = 1;
 };
 void validate(const SearchSettings& settings);  ///< throws std::invalid_argument naming field, value, constraint
@@ -45,13 +48,29 @@ struct SearchResult {
 /// An empty string accepts; otherwise the reason, which is counted. Must be thread-safe. May fill arm_solutions.
 using Accept = std::function<std::string(Grasp&)>;
 
-/// Grasps of the scene's object by one hand along the synergies of one group: NLopt over hand pose and the k synergy
-/// coordinates, then closing along the synergies until contact, finger by finger, then quality and pre-grasp
-/// (docs/deviations.md, 5).
-/// Deterministic for a seed whatever the thread count. hand: model rooted at the palm (load_hand).
+using SearchProgress = std::function<void(std::int64_t done, std::int64_t total)>;
+
+/// What all searches of one hand for one object of a scene share; refers to the caller's hand.
+struct SearchWorld {
+  const robot::RobotModel& hand;  ///< rooted at the palm (load_hand)
+  GraspTarget target;
+  HandSurface surface;
+  HandCheckers checkers;
+};
+SearchWorld make_search_world(const robot::RobotModel& hand, const robot::Scene& scene, const std::string& object,
+                              int threads);
+
+/// Grasps of the scene's object by one hand along the synergies of one group (docs/deviations.md, 5): NLopt over hand
+/// pose and the k synergy coordinates, then closing along the synergies until contact, finger by finger, then quality
+/// and pre-grasp; the best are improved by closing again from neighbouring poses. Every grasp returned is certified.
+/// Deterministic for a seed whatever the thread count.
+SearchResult search_grasps(const SearchWorld& world, const SynergyGroup& group, const SynergyBox& pre_grasp,
+                           const SearchSettings& settings, std::uint64_t seed, const Accept& accept = {},
+                           const SearchProgress& progress = {});
+
+/// The same for one search.
 SearchResult search_grasps(const robot::RobotModel& hand, const robot::Scene& scene, const std::string& object,
                            const SynergyGroup& group, const SynergyBox& pre_grasp, const SearchSettings& settings,
-                           std::uint64_t seed, const Accept& accept = {},
-                           const std::function<void(std::int64_t done, std::int64_t total)>& progress = {});
+                           std::uint64_t seed, const Accept& accept = {}, const SearchProgress& progress = {});
 
 }  // namespace opponens::grasp

@@ -15,6 +15,7 @@ namespace opponens::grasp {
 namespace {
 
 constexpr double kSparse = 0.02;        // m
+constexpr double kCoarse = 0.009;       // m
 constexpr double kDense = 0.0025;       // m
 constexpr double kGridSpacing = 0.003;  // m, of link meshes
 constexpr double kGridMargin = 0.02;    // m, fingers pass each other nearer than this only rarely
@@ -151,7 +152,7 @@ void find_approach(const robot::RobotModel& hand, const Eigen::VectorXd& q, Hand
 }  // namespace
 
 LinkShape::LinkShape(const std::vector<robot::Geometry>& geometry)
-    : sparse(samples(geometry, kSparse)), points(samples(geometry, kDense)), body(geometry) {
+    : sparse(samples(geometry, kSparse)), coarse(samples(geometry, kCoarse)), points(samples(geometry, kDense)), body(geometry) {
   if (std::none_of(geometry.begin(), geometry.end(), is_mesh) || points.empty()) return;
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& p : points.points()) box.extend(p);

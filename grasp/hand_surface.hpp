@@ -32,6 +32,7 @@ struct LinkShape {
   explicit LinkShape(const std::vector<robot::Geometry>& geometry);
 
   std::vector<Eigen::Vector3d> sparse;  ///< points of the surface 20 mm apart: objective
+  std::vector<Eigen::Vector3d> coarse;  ///< 9 mm apart: constraints of precision grasps
   PointTree points;                     ///< 2.5 mm apart: closing and verdicts
   BodyDistance body;
   std::unique_ptr<const DistanceGrid> grid;  ///< of meshes, whose distance is slow; null: body is fast enough

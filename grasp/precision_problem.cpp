@@ -33,7 +33,7 @@ PrecisionProblem::PrecisionProblem(const PrecisionSpace& space)
     : space_(space), points_(space.hand, space.surface), by_joints_(6 + space.hand.dof()) {
   const HandSurface& surface = space.surface;
   const auto& links = space.hand.links();
-  samples_ = surface.coarse;
+  for (const auto& shape : surface.shapes) samples_.push_back(shape->coarse);
   margin_.assign(links.size(), kObjectMargin);
   for (const FingerTip& tip : space.tips) {
     const auto link = static_cast<std::size_t>(tip.link);
@@ -173,7 +173,7 @@ PrecisionProblem::Least PrecisionProblem::least_between(std::size_t a, std::size
   if (bound > kHandMargin + kBeyond) return least;
   least.value = std::numeric_limits<double>::infinity();
   const double reach = surface.link_radius[b] + kHandMargin + kBeyond;
-  for (const Eigen::Vector3d& p_A : surface.coarse[a]) {
+  for (const Eigen::Vector3d& p_A : surface.shapes[a]->coarse) {
     const Eigen::Vector3d p_B = X_BA * p_A;
     const double apart = (p_B - surface.link_center[b]).norm();
     if (apart > reach) {  // a bound will do
@@ -181,7 +181,7 @@ PrecisionProblem::Least PrecisionProblem::least_between(std::size_t a, std::size
         least = {apart - surface.link_radius[b], -1, -1, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
       continue;
     }
-    const SignedDistance d = surface.links[b].query(p_B, 1.0);
+    const SignedDistance d = surface.shapes[b]->body.query(p_B, 1.0);
     if (d.value >= least.value) continue;
     least = {d.value, static_cast<int>(a), static_cast<int>(b), X_OH_ * (X_HL_[a] * p_A),
              X_OH_.linear() * (X_HL_[b].linear() * d.gradient)};
@@ -215,7 +215,7 @@ void PrecisionProblem::watch_obstacles(bool slopes) {
       const Eigen::Isometry3d X_OL = X_OH_ * X_HL_[link];
       const double reach = space_.surface.link_radius[link] + kSupportMargin + kBeyond;
       if (space_.target.obstacle_distance(X_OL * space_.surface.link_center[link], reach).value > reach) continue;
-      for (const Eigen::Vector3d& p_L : space_.surface.coarse[link]) {
+      for (const Eigen::Vector3d& p_L : space_.surface.shapes[link]->coarse) {
         const Eigen::Vector3d p_O = X_OL * p_L;
         const SignedDistance d = space_.target.obstacle_distance(p_O, reach);
         if (d.value < least.value) least = {d.value, static_cast<int>(link), -1, p_O, d.gradient};

@@ -69,12 +69,6 @@ double worth(const Grasp& grasp, PrecisionGoal goal) {
   return (goal == PrecisionGoal::min_weight ? grasp.quality.min_weight : grasp.quality.epsilon).value_or(0.0);
 }
 
-bool alike(const Grasp& a, const Grasp& b, const PrecisionSettings& settings) {
-  const Eigen::AngleAxisd turn(a.X_OH.linear().transpose() * b.X_OH.linear());
-  return (a.X_OH.translation() - b.X_OH.translation()).norm() < settings.min_distance_pose &&
-         std::abs(turn.angle()) < settings.min_distance_angle;
-}
-
 /// Best first, each different from the better ones, at most settings.count.
 std::vector<Grasp> best_of(std::vector<Grasp> found, const PrecisionSettings& settings) {
   std::stable_sort(found.begin(), found.end(),
@@ -82,8 +76,8 @@ std::vector<Grasp> best_of(std::vector<Grasp> found, const PrecisionSettings& se
   std::vector<Grasp> kept;
   for (Grasp& grasp : found) {
     if (kept.size() == static_cast<std::size_t>(settings.count)) break;
-    const bool repeats =
-        std::any_of(kept.begin(), kept.end(), [&](const Grasp& better) { return alike(better, grasp, settings); });
+    const bool repeats = std::any_of(
+        kept.begin(), kept.end(), [&](const Grasp& better) { return same_grasp(better, grasp, settings.distances); });
     if (!repeats) kept.push_back(std::move(grasp));
   }
   return kept;
@@ -113,8 +107,7 @@ void validate(const PrecisionSettings& s) {
   check(s.mu >= 0.0 && std::isfinite(s.mu), "mu", s.mu, "finite and not negative");
   check(s.max_penetration > 0.0, "max_penetration", s.max_penetration, "positive");
   check(s.clearance_pregrasp >= 0.0, "clearance_pregrasp", s.clearance_pregrasp, "not negative");
-  check(s.min_distance_pose >= 0.0, "min_distance_pose", s.min_distance_pose, "not negative");
-  check(s.min_distance_angle >= 0.0, "min_distance_angle", s.min_distance_angle, "not negative");
+  validate(s.distances);
   check(s.threads > 0, "threads", s.threads, "positive");
 }
 

@@ -10,6 +10,7 @@
 #include "core/grasp.hpp"
 #include "core/rng.hpp"
 #include "core/synergies.hpp"
+#include "grasp/distinct_grasps.hpp"
 #include "grasp/grasp_check.hpp"
 #include "grasp/grasp_search.hpp"
 #include "grasp/precision_problem.hpp"
@@ -32,8 +33,7 @@ struct PrecisionSettings {
   std::optional<QualityConvention> convention;  ///< default: 8 edges, normal force 1, torque / rho of the object
   double max_penetration = 0.001;               ///< m, of a tip's link into the object; other links stay 0.5 mm away
   double clearance_pregrasp = 0.01;             ///< m
-  double min_distance_pose = 0.01;              ///< m, two returned grasps closer than this in palm position ...
-  double min_distance_angle = 0.2;              ///< rad ... and this in palm orientation count as one
+  GraspDistances distances;                     ///< of returned grasps from each other
   int threads = 1;
 };
 void validate(const PrecisionSettings& settings);  ///< throws std::invalid_argument naming field, value, constraint

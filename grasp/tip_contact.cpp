@@ -56,7 +56,7 @@ TipTouch touch_by_samples(const FingerTip& tip, const HandSurface& surface, cons
   const auto link = static_cast<std::size_t>(tip.link);
   double least = std::numeric_limits<double>::infinity();
   Eigen::Vector3d q_O = X_OL * tip.center_L;  // of the tip's surface
-  for (const Eigen::Vector3d& p_L : surface.dense[link]) {
+  for (const Eigen::Vector3d& p_L : surface.shapes[link]->points.points()) {
     if ((p_L - tip.center_L).norm() > kTouchReach) continue;
     const Eigen::Vector3d p_O = X_OL * p_L;
     if (target.grid->value(p_O) - target.grid->spacing() > least) continue;
@@ -69,7 +69,7 @@ TipTouch touch_by_samples(const FingerTip& tip, const HandSurface& surface, cons
   robot::MeshDistance::Query at = target.distance->query(q_O);
   for (int i = 0; i < kProjections; ++i) {
     const Eigen::Vector3d p_L = X_LO * at.point;
-    const SignedDistance d = surface.links[link].query(p_L, 1.0);
+    const SignedDistance d = surface.shapes[link]->body.query(p_L, 1.0);
     const Eigen::Vector3d next = X_OL * (p_L - d.value * d.gradient);
     const robot::MeshDistance::Query there = target.distance->query(next);
     if (there.distance >= at.distance - 1e-9) break;
@@ -86,7 +86,7 @@ std::vector<FingerTip> finger_tips(const robot::RobotModel& hand, const HandSurf
     FingerTip tip{point.finger, point.link, point.p_L, 0.0, true};
     const auto link = static_cast<std::size_t>(point.link);
     if (model == TipModel::ball && !find_sphere(hand.links()[link], point.p_L, tip)) {
-      tip.radius = fitted_radius(surface.dense[link], point.p_L, point.n_L);
+      tip.radius = fitted_radius(surface.shapes[link]->points.points(), point.p_L, point.n_L);
       tip.center_L = point.p_L - tip.radius * point.n_L;
       tip.exact = false;
     }
