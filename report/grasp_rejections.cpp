@@ -41,7 +41,7 @@ std::vector<Bar> commonest(const GraspSearch& search, std::size_t shown) {
     for (const auto& one : by_reason(search.rejected)) all.push_back({one.reason, one.trials});
   }
   if (all.size() <= shown + 1) return all;
-  const Bar others{concat({std::to_string(all.size() - shown), " other reasons"}), 0};
+  const Bar others{concat({"other reasons (", std::to_string(all.size() - shown), ")"}), 0};
   std::vector<Bar> bars(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(shown));
   bars.push_back(others);
   for (std::size_t i = shown; i < all.size(); ++i) bars.back().trials += all[i].trials;
