@@ -12,9 +12,9 @@ namespace opponens::report {
 namespace {
 
 constexpr std::size_t kBars = 7;  // reasons with a bar of their own
-constexpr double kWidth = 620.0;  // px
+constexpr double kWidth = 700.0;  // px
 constexpr double kRow = 20.0;
-constexpr double kLabels = 250.0;
+constexpr double kLabels = 310.0;
 constexpr double kFigures = 110.0;
 constexpr double kFont = 12.0;
 
