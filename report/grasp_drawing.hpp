@@ -22,8 +22,8 @@ struct GraspStage {
   Eigen::Vector3d up;         ///< unit, the world's up in O
 };
 
-/// object must have geometry (std::invalid_argument). Meshes are simplified to about 2400 triangles for the hand and
-/// 800 for the object: below what 3.5 px tell.
+/// object must have geometry (std::invalid_argument). Meshes are simplified to 2400 triangles for the hand and 1200 for
+/// the object at most: a picture of 36 kB for the demo's bottle.
 GraspStage grasp_stage(const robot::RobotModel& hand, const robot::SceneBody& object);
 
 /// Hand and object of a grasp. q_grasp must have the hand's number of joints (std::invalid_argument).

@@ -12,9 +12,9 @@ namespace opponens::report {
 namespace {
 
 constexpr std::size_t kBars = 7;  // reasons with a bar of their own
-constexpr double kWidth = 620.0;  // px
+constexpr double kWidth = 700.0;  // px
 constexpr double kRow = 20.0;
-constexpr double kLabels = 250.0;
+constexpr double kLabels = 310.0;
 constexpr double kFigures = 110.0;
 constexpr double kFont = 12.0;
 
@@ -41,7 +41,7 @@ std::vector<Bar> commonest(const GraspSearch& search, std::size_t shown) {
     for (const auto& one : by_reason(search.rejected)) all.push_back({one.reason, one.trials});
   }
   if (all.size() <= shown + 1) return all;
-  const Bar others{concat({std::to_string(all.size() - shown), " other reasons"}), 0};
+  const Bar others{concat({"other reasons (", std::to_string(all.size() - shown), ")"}), 0};
   std::vector<Bar> bars(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(shown));
   bars.push_back(others);
   for (std::size_t i = shown; i < all.size(); ++i) bars.back().trials += all[i].trials;

@@ -192,8 +192,8 @@ TEST(RejectionChart, BarsAreAsLongAsTheirShares) {
     EXPECT_TRUE(contains(html, words)) << words;
   }
   for (int i = 0; i < 12; ++i) search.rejected[concat({"rare ", std::to_string(10 + i)})] = 1;
-  EXPECT_TRUE(contains(rejection_chart(search).html, "8 other reasons"));
-  EXPECT_TRUE(contains(rejection_words(search, 2), "50 % a, 25 % b, 18 % 13 other reasons"));
+  EXPECT_TRUE(contains(rejection_chart(search).html, "other reasons (8)"));
+  EXPECT_TRUE(contains(rejection_words(search, 2), "50 % a, 25 % b, 18 % other reasons (13)"));
   search.trials = 0;
   EXPECT_TRUE(rejection_chart(search).html.empty());
 }
