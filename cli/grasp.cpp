@@ -6,6 +6,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/grasp_causes.hpp"
+#include "cli/grasp_document.hpp"
 #include "cli/grasp_preconditions.hpp"
 #include "cli/grasp_reach.hpp"
 #include "cli/grasp_settings.hpp"
@@ -23,47 +24,6 @@
 
 namespace opponens::cli {
 namespace {
-
-Json contacts_json(const std::vector<Contact>& contacts) {
-  Json result = Json::array();
-  for (const auto& contact : contacts) {
-    result.push_back(
-        {{"link", contact.link}, {"p", array(contact.p_OC)}, {"n", array(contact.n_O)}, {"mu", contact.mu}});
-  }
-  return result;
-}
-
-Json robust_json(const std::optional<RobustQuality>& robust) {
-  if (!robust) return nullptr;
-  return {{"force_closure", robust->force_closure},
-          {"interval", {robust->force_closure_low, robust->force_closure_high}},
-          {"epsilon_mean", robust->epsilon_mean},
-          {"epsilon_low", robust->epsilon_low},
-          {"noise",
-           {{"position", robust->noise.position},
-            {"angle", robust->noise.angle},
-            {"friction", robust->noise.friction},
-            {"samples", robust->noise.samples}}}};
-}
-
-Json grasp_json(const std::string& id, const Grasp& grasp, const std::vector<std::string>& joints) {
-  return {{"id", id},
-          {"group", grasp.group},
-          {"force_closure", grasp.quality.force_closure()},
-          {"certified", grasp.certificate.has_value()},
-          {"epsilon", number(grasp.quality.epsilon)},
-          {"min_weight", number(grasp.quality.min_weight)},
-          {"robust", robust_json(grasp.robust)},
-          {"origin", grasp.origin == GraspOrigin::imported ? "imported" : "searched"},
-          {"slack", grasp.slack.norm()},
-          {"synergy_grasp", grasp.synergy_grasp},
-          {"X_OH", pose(grasp.X_OH)},
-          {"X_OH_pregrasp", pose(grasp.X_OH_pregrasp)},
-          {"joints", by_name(joints, grasp.q_grasp)},
-          {"pregrasp", by_name(joints, grasp.q_pregrasp)},
-          {"arm_solutions", grasp.arm_solutions.size()},
-          {"contacts", contacts_json(grasp.contacts)}};
-}
 
 /// What one command works on.
 struct Task {

@@ -41,31 +41,48 @@ Json fields_below(const Json& fields, const std::string& prefix) {
   return result;
 }
 
-Json robust_document(const RobustQuality& robust) {
-  return {{"force_closure", robust.force_closure},
-          {"interval", {robust.force_closure_low, robust.force_closure_high}},
-          {"epsilon_mean", robust.epsilon_mean},
-          {"epsilon_low", robust.epsilon_low},
-          {"noise",
-           {{"position", robust.noise.position},
-            {"angle", robust.noise.angle},
-            {"friction", robust.noise.friction},
-            {"samples", robust.noise.samples}}}};
+Json contacts_json(const std::vector<Contact>& contacts) {
+  Json result = Json::array();
+  for (const Contact& contact : contacts) {
+    result.push_back(
+        {{"link", contact.link}, {"p", array(contact.p_OC)}, {"n", array(contact.n_O)}, {"mu", number(contact.mu)}});
+  }
+  return result;
 }
 
-Json quality_of(const Grasp& grasp, const Json& fields) {
-  return {{"force_closure", grasp.quality.force_closure()},
-          {"certified", grasp.certificate.has_value()},
-          {"state", fields.at("quality.state")},
-          {"epsilon", number(grasp.quality.epsilon)},
-          {"epsilon_gap", number(grasp.quality.epsilon_gap)},
-          {"min_weight", number(grasp.quality.min_weight)},
-          {"volume", number(grasp.quality.volume)},
-          {"convention", fields_below(fields, "convention.")},
-          {"robust", grasp.robust ? robust_document(*grasp.robust) : Json(nullptr)}};
+Json robust_json(const std::optional<RobustQuality>& robust) {
+  if (!robust) return nullptr;
+  return {{"force_closure", robust->force_closure},
+          {"interval", {robust->force_closure_low, robust->force_closure_high}},
+          {"epsilon_mean", robust->epsilon_mean},
+          {"epsilon_low", robust->epsilon_low},
+          {"noise",
+           {{"position", robust->noise.position},
+            {"angle", robust->noise.angle},
+            {"friction", robust->noise.friction},
+            {"samples", robust->noise.samples}}}};
 }
 
 }  // namespace
+
+Json grasp_json(const std::string& id, const Grasp& grasp, const std::vector<std::string>& joints) {
+  return {{"id", id},
+          {"group", grasp.group},
+          {"force_closure", grasp.quality.force_closure()},
+          {"certified", grasp.certificate.has_value()},
+          {"epsilon", number(grasp.quality.epsilon)},
+          {"min_weight", number(grasp.quality.min_weight)},
+          {"robust", robust_json(grasp.robust)},
+          {"origin", grasp.origin == GraspOrigin::imported ? "imported" : "searched"},
+          {"slack", grasp.slack.norm()},
+          {"synergy_grasp", grasp.synergy_grasp},
+          {"X_OH", pose(grasp.X_OH)},
+          {"X_OH_pregrasp", pose(grasp.X_OH_pregrasp)},
+          {"joints", by_name(joints, grasp.q_grasp)},
+          {"pregrasp", by_name(joints, grasp.q_pregrasp)},
+          {"arm_solutions", grasp.arm_solutions.size()},
+          {"contacts", contacts_json(grasp.contacts)}};
+}
 
 const std::vector<std::string>* GraspDocuments::joints_of(const storage::Record& record) {
   if (record.provenance.inputs.empty()) return nullptr;
@@ -88,22 +105,17 @@ std::optional<Json> GraspDocuments::of(const std::string& id, const storage::Rec
                      " joints, the synergies that it names as its input " + std::to_string(joints->size()));
   }
   const Json world = parameters_of(record).value("world", Json::object());
-  Json result = {{"id", id},
-                 {"group", grasp.group},
-                 {"object", world.value("object", "")},
+  const Json fields = record_json(id, record).at("fields");
+  Json result = grasp_json(id, grasp, *joints);
+  result.update({{"object", world.value("object", "")},
                  {"robot", world.value("robot", "")},
                  {"scene", world.value("scene", "")},
                  {"synergies", record.provenance.inputs.front()},
-                 {"origin", grasp.origin == GraspOrigin::imported ? "imported" : "searched"},
-                 {"slack", grasp.slack.norm()},
-                 {"synergy_grasp", grasp.synergy_grasp},
-                 {"X_OH", pose(grasp.X_OH)},
-                 {"X_OH_pregrasp", pose(grasp.X_OH_pregrasp)},
-                 {"joints", by_name(*joints, grasp.q_grasp)},
-                 {"pregrasp", by_name(*joints, grasp.q_pregrasp)},
-                 {"arm_solutions", grasp.arm_solutions.size()},
-                 {"contacts", contacts_with_wrenches(grasp)}};
-  result.update(quality_of(grasp, record_json(id, record).at("fields")));
+                 {"state", fields.at("quality.state")},
+                 {"epsilon_gap", number(grasp.quality.epsilon_gap)},
+                 {"volume", number(grasp.quality.volume)},
+                 {"convention", fields_below(fields, "convention.")},
+                 {"contacts", contacts_with_wrenches(grasp)}});
   return result;
 }
 

@@ -8,9 +8,13 @@
 #include <vector>
 
 #include "cli/json.hpp"
+#include "core/grasp.hpp"
 #include "storage/store.hpp"
 
 namespace opponens::cli {
+
+/// A grasp as `grasp --json` prints it; joints: names of its hand's joints.
+Json grasp_json(const std::string& id, const Grasp& grasp, const std::vector<std::string>& joints);
 
 /// Grasps of a store as documents for other programs (docs/cli.md, export): the form of `grasp --json`, with what the
 /// grasp was made for, the convention of its quality, and the wrenches of every contact.

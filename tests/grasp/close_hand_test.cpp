@@ -74,6 +74,34 @@ TEST(CloseHand, DrawsBackAndOpensWhenItStartsInsideTheObject) {
   EXPECT_FALSE(close_hand(bench.closing, buried).has_value());  // deeper than it may draw back
 }
 
+TEST(CloseHand, AFingerThatStartsBesideAnotherStillCloses) {
+  const Workbench bench(test::scene_of(robot::Sphere{0.04}));
+  HandPose start = before_the_object(bench, 0.06);
+  // Index and middle finger lean against each other, nearer than the margin between fingers.
+  double lean = 0.0;
+  while (lean < 0.4 && self_distance(bench.closing, start, 0.01) > 0.0008) {
+    lean += 0.002;
+    start.q[0] = lean;
+    start.q[4] = -lean;
+  }
+  if (self_distance(bench.closing, start, 0.01) > 0.0008) {
+    lean = 0.0;
+    while (lean < 0.4 && self_distance(bench.closing, start, 0.01) > 0.0008) {
+      lean += 0.002;
+      start.q[0] = -lean;
+      start.q[4] = lean;
+    }
+  }
+  ASSERT_LT(self_distance(bench.closing, start, 0.01), 0.0008);
+  ASSERT_GT(self_distance(bench.closing, start, 0.01), 0.0);
+  const auto closed = close_hand(bench.closing, start);
+  ASSERT_TRUE(closed.has_value());
+  std::set<std::string> links;
+  for (const Contact& contact : find_contacts(bench.closing, *closed, 0.001, 0.5)) links.insert(contact.link);
+  EXPECT_GE(links.size(), 3u);
+  EXPECT_GT(self_distance(bench.closing, *closed, 0.01), 0.0);
+}
+
 TEST(CloseHand, FingersStopShortOfObstacles) {
   // A plate between the fingers and the ball.
   robot::Scene scene = test::scene_of(robot::Sphere{0.04});
@@ -119,7 +147,7 @@ TEST(GraspCheck, ObjectEdgesBetweenHandSamplesAreSeen) {
   HandPose pose = before_the_object(bench, 0.0);
   pose.X_OH.translation() = -(bench.surface.palm_center + (0.04 - 0.003) * bench.surface.approach);
   pose.X_OH.translation().y() += 0.0011;
-  const auto distances = object_link_distances(bench.closing, pose, 0.01);
+  const std::vector<double> distances = object_link_distances(bench.closing, pose, 0.01);
   EXPECT_NEAR(*std::min_element(distances.begin(), distances.end()), -0.003, 0.0003);
 }
 
