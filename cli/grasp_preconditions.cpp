@@ -17,7 +17,7 @@
 namespace opponens::cli {
 namespace {
 
-constexpr double kMaxSunk = 0.004;       // m, that an object may stand in another body
+constexpr double kMaxSunk = 0.004;      // m, that an object may stand in another body
 constexpr int kSamplesAcross = 30;      // surface points of the object along its longest edge
 constexpr double kLeastSpacing = 2e-3;  // m
 

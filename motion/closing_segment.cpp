@@ -16,17 +16,24 @@ World closing_world(const robot::CollisionChecker& free_space, const robot::Coll
                     const ContactLimit& contact) {
   std::set<std::string> links;
   for (const Contact& c : contacts) links.insert(c.link);
-  return make_world(
-      [&free_space, &closing, &robot, links, contact](const Eigen::VectorXd& q) {
-        if (!robot.within_limits(q)) return false;
-        if (free_space.free(q)) return true;
-        if (!closing.free(q)) return false;
-        for (const robot::BodyPair& pair : free_space.colliding_pairs(q)) {
-          if (links.count(pair.first) == 0 && links.count(pair.second) == 0) return false;
-        }
-        return contact.depth == nullptr || (*contact.depth)(q) <= contact.max_depth;
-      },
-      robot.weights(), resolution);
+  const auto touches_right = [&free_space, &closing, links, contact](const Eigen::VectorXd& q) {
+    if (!closing.free(q)) return false;
+    for (const robot::BodyPair& pair : free_space.colliding_pairs(q)) {
+      if (links.count(pair.first) == 0 && links.count(pair.second) == 0) return false;
+    }
+    return contact.depth == nullptr || (*contact.depth)(q) <= contact.max_depth;
+  };
+  const auto first_invalid_row = [&free_space, &robot,
+                                  touches_right](const robot::ConfigurationBatch& batch) -> std::optional<int> {
+    const std::vector<bool> free = free_space.free_rows(batch);
+    for (int row = 0; row < batch.rows(); ++row) {
+      const Eigen::VectorXd q = batch.row(row).transpose();
+      if (!robot.within_limits(q)) return row;
+      if (!free[static_cast<std::size_t>(row)] && !touches_right(q)) return row;
+    }
+    return std::nullopt;
+  };
+  return make_world_by_rows(first_invalid_row, robot.weights(), resolution);
 }
 
 namespace {

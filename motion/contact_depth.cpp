@@ -28,7 +28,8 @@ ContactDepth::ContactDepth(const robot::RobotModel& robot, const robot::Scene& s
     const auto* shared = std::get_if<std::shared_ptr<const robot::TriangleMesh>>(&geometry.shape);
     auto mesh = shared ? *shared : std::make_shared<const robot::TriangleMesh>(robot::triangulate(geometry.shape, 64));
     const Eigen::Isometry3d X_GR = (body.X_WB * geometry.X_BG).inverse() * scene.X_WR;
-    solids_.push_back({robot::MeshDistance(std::move(mesh)), X_GR});
+    const Eigen::AlignedBox3d box(mesh->vertices.rowwise().minCoeff(), mesh->vertices.rowwise().maxCoeff());
+    solids_.push_back({robot::MeshDistance(std::move(mesh)), X_GR, box});
   }
   for (const std::string& name : links) {
     const int link = robot.link_index(name);
@@ -70,7 +71,11 @@ double ContactDepth::deepest(const LinkSurface& link, const Solid& solid, const 
   for (std::size_t i = 0; i < link.balls.size();) {
     const Ball& ball = link.balls[i];
     // A signed distance changes by no more than the way: no point of a ball this far out is deeper.
-    const bool may_be_deeper = solid.distance.signed_distance(X_GL * ball.center) < ball.radius - depth;
+    const Eigen::Vector3d p_G = X_GL * ball.center;
+    const double reach = ball.radius - depth;
+    const double outside = solid.box.exteriorDistance(p_G);
+    const bool far = outside > 0.0 && outside >= reach;
+    const bool may_be_deeper = !far && solid.distance.signed_distance(p_G) < reach;
     if (may_be_deeper && ball.leaf) {
       for (std::size_t p = ball.begin; p < ball.end; ++p) {
         depth = std::max(depth, -solid.distance.signed_distance(X_GL * link.points[p]));

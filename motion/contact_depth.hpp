@@ -45,7 +45,8 @@ class ContactDepth {
   };
   struct Solid {
     robot::MeshDistance distance;
-    Eigen::Isometry3d X_GR;  ///< robot root in the geometry's frame
+    Eigen::Isometry3d X_GR;   ///< robot root in the geometry's frame
+    Eigen::AlignedBox3d box;  ///< of the geometry: what is outside is at least as far from the surface as from it
   };
   /// The greater of depth and what the points of the link reach in the solid.
   static double deepest(const LinkSurface& link, const Solid& solid, const Eigen::Isometry3d& X_GL, double depth);

@@ -62,9 +62,9 @@ std::optional<double> first_invalid(const Eigen::VectorXd& q_from, const Eigen::
   return std::nullopt;
 }
 
-std::optional<double> first_invalid(const Eigen::VectorXd& q_from, const Eigen::VectorXd& q_to,
-                                    const robot::CollisionChecker& checker, const Eigen::VectorXd& weights,
-                                    double resolution, std::int64_t& checks) {
+std::optional<double> first_invalid_by_rows(const Eigen::VectorXd& q_from, const Eigen::VectorXd& q_to,
+                                            const FirstInvalidRow& first_row, const Eigen::VectorXd& weights,
+                                            double resolution, std::int64_t& checks) {
   CoarseToFine fractions(distance(weights, q_from, q_to), resolution);
   robot::ConfigurationBatch batch(robot::CollisionChecker::kTogether, q_to.size());
   std::array<double, robot::CollisionChecker::kTogether> asked{};
@@ -77,9 +77,37 @@ std::optional<double> first_invalid(const Eigen::VectorXd& q_from, const Eigen::
     }
     if (rows < batch.rows()) batch.conservativeResize(rows, Eigen::NoChange);
     checks += rows;
-    if (const auto row = checker.first_colliding(batch)) return asked[static_cast<std::size_t>(*row)];
+    if (const auto row = first_row(batch)) return asked[static_cast<std::size_t>(*row)];
   }
   return std::nullopt;
+}
+
+std::optional<double> first_invalid(const Eigen::VectorXd& q_from, const Eigen::VectorXd& q_to,
+                                    const robot::CollisionChecker& checker, const Eigen::VectorXd& weights,
+                                    double resolution, std::int64_t& checks) {
+  const auto first = [&checker](const robot::ConfigurationBatch& batch) { return checker.first_colliding(batch); };
+  return first_invalid_by_rows(q_from, q_to, first, weights, resolution, checks);
+}
+
+World make_world_by_rows(const FirstInvalidRow& first_row, const Eigen::VectorXd& weights, double resolution) {
+  require(static_cast<bool>(first_row) && std::isfinite(resolution) && resolution > 0.0,
+          "make_world_by_rows: a validity is needed, and a resolution that is positive and finite");
+  const auto at = [first_row, weights](double spacing) -> MotionCheck {
+    return [first_row, weights, spacing](const Eigen::VectorXd& q_from, const Eigen::VectorXd& q_to,
+                                         std::int64_t& checks) {
+      return first_invalid_by_rows(q_from, q_to, first_row, weights, spacing, checks);
+    };
+  };
+  World world;
+  world.first_invalid = at(resolution);
+  world.confirm = at(resolution / kConfirmShare);
+  world.free = [first_row](const Eigen::MatrixXd& batch, std::int64_t& checks) {
+    std::vector<bool> free;
+    for (const auto& row : batch.rowwise()) free.push_back(!first_row(robot::ConfigurationBatch(row)));
+    checks += batch.rows();
+    return free;
+  };
+  return world;
 }
 
 World make_world(const Validity& valid, const Eigen::VectorXd& weights, double resolution, double confirm_resolution) {

@@ -29,6 +29,17 @@ std::optional<double> first_invalid(const Eigen::VectorXd& q_from, const Eigen::
                                     const robot::CollisionChecker& checker, const Eigen::VectorXd& weights,
                                     double resolution, std::int64_t& checks);
 
+/// The first row of a batch [B x d] rad that is not valid. Same argument, same answer.
+using FirstInvalidRow = std::function<std::optional<int>(const robot::ConfigurationBatch& batch)>;
+
+/// The same with any validity that is asked of eight configurations at a time.
+std::optional<double> first_invalid_by_rows(const Eigen::VectorXd& q_from, const Eigen::VectorXd& q_to,
+                                            const FirstInvalidRow& first_row, const Eigen::VectorXd& weights,
+                                            double resolution, std::int64_t& checks);
+
+/// A World of such a validity, at the given spacing and at a tenth of it to confirm an answer.
+World make_world_by_rows(const FirstInvalidRow& first_row, const Eigen::VectorXd& weights, double resolution);
+
 /// A World that asks `valid` at the given spacing, and at confirm_resolution (default: a tenth of it) to confirm an
 /// answer; confirm_resolution = 0: no confirmation.
 World make_world(const Validity& valid, const Eigen::VectorXd& weights, double resolution, double confirm_resolution);

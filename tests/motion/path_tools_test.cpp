@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "motion/closing_segment.hpp"
+#include "motion/edge_check.hpp"
 #include "motion/joint_metric.hpp"
 #include "motion/shortcut.hpp"
 #include "motion/timing.hpp"
@@ -66,6 +67,32 @@ JointPath zigzag() {
   Eigen::MatrixXd waypoints(6, 4);
   waypoints << -1, -1, 0, 0, -1, 1.5, 0.5, 0, 0, 1.5, 0.5, 0.5, 0, 1.8, 0, 0.5, 1, 1.5, 0, 0, 1, -1, -0.3, 0.2;
   return {{"x", "y", "h1", "h2"}, waypoints};
+}
+
+/// Eight at a time the answer is the same; only the count says that the rest of an eight was asked too.
+TEST(EdgeCheck, ByRowsIsTheSame) {
+  const auto at = [](double x) { return Eigen::VectorXd::Constant(1, x); };
+  for (const double wall : {0.03, 0.2, 0.51, 0.75, 0.99, 2.0}) {
+    const Validity valid = [wall](const Eigen::VectorXd& q) { return q[0] < wall || q[0] > wall + 0.05; };
+    const FirstInvalidRow first_row = [&valid](const robot::ConfigurationBatch& batch) -> std::optional<int> {
+      EXPECT_LE(batch.rows(), 8);
+      for (int row = 0; row < batch.rows(); ++row) {
+        if (!valid(batch.row(row).transpose())) return row;
+      }
+      return std::nullopt;
+    };
+    std::int64_t one = 0;
+    std::int64_t eight = 0;
+    EXPECT_EQ(first_invalid(at(0), at(1), valid, at(1), 0.03, one),
+              first_invalid_by_rows(at(0), at(1), first_row, at(1), 0.03, eight));
+    EXPECT_GE(eight, one);
+    EXPECT_LT(eight, one + 8);
+    const World world = make_world_by_rows(first_row, at(1), 0.03);
+    EXPECT_EQ(static_cast<bool>(world.first_invalid(at(0), at(1), eight)), wall < 1.0);
+    EXPECT_EQ(static_cast<bool>(world.confirm(at(0), at(1), eight)), wall < 1.0);
+    EXPECT_EQ(world.free(Eigen::Vector2d(0.0, wall + 0.01), eight), (std::vector<bool>{true, false}));
+  }
+  EXPECT_THROW(make_world_by_rows({}, at(1), 0.03), std::invalid_argument);
 }
 
 TEST(Shortcut, ShorterValidAndDeterministic) {
