@@ -226,9 +226,9 @@ void declare_check(CLI::App& app, CheckOptions& options) {
 
 void declare_quality(CLI::App& app, QualityOptions& options) {
   app.add_option("FILE", options.file, "Contact sets, JSON (docs/cli.md)")->required();
-  app.add_option("--norm", options.norm, "Total normal force 1, each contact's normal force 1, or both")
-      ->check(CLI::IsMember({"L1", "Linf", "both"}))
-      ->capture_default_str();
+  app.add_option("--norm", options.norm,
+                 "Total normal force 1, each contact's normal force 1, or both, in place of the file's")
+      ->check(CLI::IsMember({"L1", "Linf", "both"}));
   app.add_option("--model", options.model, "Contact model, in place of the file's")
       ->check(CLI::IsMember({"frictionless", "point_with_friction", "soft_finger"}));
   app.add_option("--cone", options.cone, "Pyramids of edges, or the exact round cones, in place of the file's")

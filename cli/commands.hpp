@@ -137,8 +137,8 @@ struct CheckOptions {
 };
 struct QualityOptions {
   std::filesystem::path file{};
-  std::string norm = "both";         ///< L1, Linf or both
-  std::string model{};               ///< of the contacts; empty, here and below: the file's
+  std::string norm{};                ///< L1, Linf or both; empty, here and below: the file's
+  std::string model{};               ///< of the contacts
   std::string cone{};                ///< pyramid or quadratic
   std::string unit{};                ///< normal or force
   std::optional<int> edges{};        ///< of a pyramid

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/contact_cases.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <iterator>
 #include <map>
 
 #include "cli/json.hpp"
@@ -86,7 +86,7 @@ const std::map<std::string, ContactModel> kModels{
     {"frictionless", ContactModel::frictionless}, {"pcwf", ContactModel::point_with_friction},
     {"point", ContactModel::point_with_friction}, {"point_with_friction", ContactModel::point_with_friction},
     {"soft", ContactModel::soft_finger},          {"soft_finger", ContactModel::soft_finger}};
-const std::map<std::string, ForceUnit> kUnits{{"normal", ForceUnit::normal}, {"force", ForceUnit::force}};
+const std::map<std::string, ForceUnit> kForceUnits{{"normal", ForceUnit::normal}, {"force", ForceUnit::force}};
 const std::map<std::string, FrictionCone> kCones{{"pyramid", FrictionCone::pyramid},
                                                  {"quadratic", FrictionCone::quadratic}};
 
@@ -94,7 +94,8 @@ QualityConvention convention_of(const Fields& fields, const QualityOptions& opti
   QualityConvention convention;
   convention.model =
       options.model.empty() ? fields.word("model", convention.model, kModels) : kModels.at(options.model);
-  convention.unit = options.unit.empty() ? fields.word("unit", convention.unit, kUnits) : kUnits.at(options.unit);
+  convention.unit =
+      options.unit.empty() ? fields.word("unit", convention.unit, kForceUnits) : kForceUnits.at(options.unit);
   convention.cone = options.cone.empty() ? fields.word("cone", convention.cone, kCones) : kCones.at(options.cone);
   convention.mu = options.mu.value_or(fields.number("mu", convention.mu, 0.0, 1e6, "a friction coefficient >= 0"));
   const std::string whole = "a whole number from 3 to 1024";
@@ -169,6 +170,27 @@ TaskInput task_of(const Fields& fields, const QualityConvention& convention) {
   return task;
 }
 
+/// The option's norms, or those of `norm` (a word or a list), or those of the results that came with the case, or both.
+std::vector<WrenchNorm> norms_of(const Fields& fields, const QualityOptions& options) {
+  Json words = Json::array();
+  if (!options.norm.empty()) {
+    words = options.norm == "both" ? Json{"L1", "Linf"} : Json::array({options.norm});
+  } else if (const Json* const norm = fields.find("norm")) {
+    words = norm->is_array() ? *norm : Json::array({*norm});
+  } else if (const Json* const results = fields.own("results"); results != nullptr && results->is_array()) {
+    for (const Json& result : *results)
+      words.push_back(result.is_object() && result.contains("norm") ? result["norm"] : Json());
+  }
+  if (words.empty()) words = {"L1", "Linf"};
+  std::vector<WrenchNorm> norms;
+  for (const Json& word : words) {
+    if (word != "L1" && word != "Linf") Fields::fail(fields.path("norm"), word, "L1 or Linf");
+    const WrenchNorm norm = word == "L1" ? WrenchNorm::l1 : WrenchNorm::linf;
+    if (std::find(norms.begin(), norms.end(), norm) == norms.end()) norms.push_back(norm);
+  }
+  return norms;
+}
+
 std::string name_of(const Fields& fields, std::size_t number) {
   if (const Json* const name = fields.own("name")) return name->is_string() ? name->get<std::string>() : name->dump();
   if (const Json* const rank = fields.own("rank")) return "grasp " + rank->dump();
@@ -202,7 +224,7 @@ std::vector<ContactCase> read_contact_cases(const fs::path& file, const QualityO
   std::vector<ContactCase> cases;
   for (std::size_t i = 0; i < list->size(); ++i) {
     const Fields fields((*list)[i], single ? file.string() + ":" : top.path(key + "[" + std::to_string(i) + "]"), &top);
-    ContactCase one{name_of(fields, i), {}, convention_of(fields, options), {}};
+    ContactCase one{name_of(fields, i), {}, convention_of(fields, options), norms_of(fields, options), {}};
     one.contacts = contacts_of(fields, one.convention, options.mu.has_value());
     one.task = task_of(fields, one.convention);
     cases.push_back(std::move(one));

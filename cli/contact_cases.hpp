@@ -25,6 +25,7 @@ struct ContactCase {
   std::string name;
   std::vector<Contact> contacts;
   QualityConvention convention;
+  std::vector<WrenchNorm> norms;  ///< under which to score it, one or two
   TaskInput task;
 };
 

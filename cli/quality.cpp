@@ -18,7 +18,7 @@ using grasp::Matrix6Xd;
 
 constexpr int kClosePyramid = 64;  // edges: within 0.12 % of the round cone
 
-const char* name_of(WrenchNorm norm) { return norm == WrenchNorm::l1 ? "L1" : "Linf"; }
+const char* norm_name(WrenchNorm norm) { return norm == WrenchNorm::l1 ? "L1" : "Linf"; }
 
 const char* state_name(ClosureState state) {
   constexpr std::array names = {"force_closure", "not_force_closure", "rank_deficient", "below_incumbent"};
@@ -117,15 +117,14 @@ Json score(const ContactCase& one, const QualityOptions& options, const Console&
   Json results = Json::array();
   std::optional<Certificate> certificate;
   bool asked = false;
-  for (const WrenchNorm norm : {WrenchNorm::l1, WrenchNorm::linf}) {
-    if (options.norm != "both" && options.norm != name_of(norm)) continue;
+  for (const WrenchNorm norm : one.norms) {
     QualityConvention convention = one.convention;
     convention.norm = norm;
     const GraspQuality quality =
         grasp::evaluate(one.contacts, convention, {options.volume, options.at_least, options.quadratic_gap});
     if (!asked) certificate = certificate_of(one, quality.force_closure());  // closure does not depend on the norm
     asked = true;
-    Json result = {{"norm", name_of(norm)},
+    Json result = {{"norm", norm_name(norm)},
                    {"epsilon", number(quality.epsilon)},
                    {"epsilon_gap", quality.epsilon ? Json(quality.epsilon_gap) : Json(nullptr)},
                    {"volume", number(quality.volume)},

@@ -8,15 +8,15 @@
 namespace opponens::grasp {
 namespace {
 
-constexpr double kExactWithin = 0.002;  // m, nearer points are measured on the mesh instead of the grid
-constexpr std::size_t kMeasured = 5;    // of them
-constexpr double kBand = 0.0005;        // m, of rough distances among which the nearest point is looked for
-constexpr std::size_t kEnough = 40;     // such points: a flat palm on a flat side has a thousand
-constexpr double kFarShare = 0.9;       // of a distance beyond kExactWithin: a nearer point within it is not looked for
+constexpr double kExactWithin = 0.002;   // m, nearer points are measured on the mesh instead of the grid
+constexpr std::size_t kMeasured = 5;     // of them
+constexpr double kBand = 0.0005;         // m, of rough distances among which the nearest point is looked for
+constexpr std::size_t kEnoughNear = 40;  // such points: a flat palm on a flat side has a thousand
+constexpr double kFarShare = 0.9;  // of a distance beyond kExactWithin: a nearer point within it is not looked for
 constexpr double kObstacleMargin = 0.003;  // m, a finger stops this far from support and obstacles
 constexpr double kSelfMargin = 0.001;      // m, and this far from the hand's other links
-constexpr double kFar = 0.05;              // m, distances beyond it do not matter
-constexpr double kSpare = 0.0003;          // m, more than kTouch, by which the excused may come nearer still
+constexpr double kFarthest = 0.05;         // m, distances beyond it do not matter
+constexpr double kExcused = 0.0003;        // m, more than kTouch, by which the excused may come nearer still
 
 }  // namespace
 
@@ -32,7 +32,7 @@ void ClearanceProbe::place(const HandPose& pose) {
 double ClearanceProbe::hand_clearance(const HandPose& pose, const std::vector<int>& links) {
   place(pose);
   self_margin_ = kSelfMargin;
-  double least = kFar;
+  double least = kFarthest;
   for (const int link : links) least = from_hand(static_cast<std::size_t>(link), least);
   return least;
 }
@@ -41,20 +41,20 @@ void ClearanceProbe::excuse(const HandPose& pose, const std::vector<int>& links)
   place(pose);
   obstacle_margin_ = kObstacleMargin;
   self_margin_ = kSelfMargin;
-  double obstacles = kSpare;
-  double hand = kSpare;
+  double obstacles = kExcused;
+  double hand = kExcused;
   for (const int link : links) {
     obstacles = from_obstacles(pose.X_OH, static_cast<std::size_t>(link), obstacles);
     hand = from_hand(static_cast<std::size_t>(link), hand);
   }
-  obstacle_margin_ += obstacles - kSpare;
-  self_margin_ += hand - kSpare;
+  obstacle_margin_ += obstacles - kExcused;
+  self_margin_ += hand - kExcused;
 }
 
 Clearance ClearanceProbe::operator()(const HandPose& pose, const std::vector<int>& links, Watch watch) {
   place(pose);
   near_.clear();
-  Clearance least{kFar, kFar};
+  Clearance least{kFarthest, kFarthest};
   for (const int link : links) look_at_object(pose.X_OH, static_cast<std::size_t>(link), least);
   // Deep inside, the rough depth is enough: it only tells how far to move before asking again.
   const bool deep = least.object < -2.0 * scene_.target.grid->spacing();
@@ -73,7 +73,7 @@ void ClearanceProbe::look_at_object(const Eigen::Isometry3d& X_OH, std::size_t l
   // the distance does not matter.
   const auto bound = [&] {
     if (least.object >= kExactWithin) return kFarShare * least.object;
-    return near_.size() < kEnough ? std::min(least.object + kBand, kExactWithin) : least.object;
+    return near_.size() < kEnoughNear ? std::min(least.object + kBand, kExactWithin) : least.object;
   };
   scene_.surface.shapes[link]->points.descend([&grid](const Eigen::Vector3d& p_O) { return grid.bound(p_O); },
                                               X_OH * X_HL_[link], bound(),
@@ -95,7 +95,7 @@ void ClearanceProbe::measure(Clearance& least) {
   const std::size_t count = std::min(kMeasured, near_.size());
   std::partial_sort(near_.begin(), near_.begin() + static_cast<std::ptrdiff_t>(count), near_.end(),
                     [](const Near& a, const Near& b) { return a.rough < b.rough; });
-  least.object = kFar;
+  least.object = kFarthest;
   for (std::size_t i = 0; i < count; ++i) {
     const Near& point = near_[i];
     if (point.rough > least.object + scene_.target.grid->spacing()) break;  // once this far off, the rest cannot win
@@ -109,7 +109,9 @@ void ClearanceProbe::measure(Clearance& least) {
 
 double ClearanceProbe::from_obstacles(const Eigen::Isometry3d& X_OH, std::size_t link, double least) const {
   if (scene_.target.obstacles.empty()) return least;
-  const auto distance = [this](const Eigen::Vector3d& p_O) { return scene_.target.obstacle_distance(p_O, kFar).value; };
+  const auto distance = [this](const Eigen::Vector3d& p_O) {
+    return scene_.target.obstacle_distance(p_O, kFarthest).value;
+  };
   return nearest(distance, link, X_OH * X_HL_[link], obstacle_margin_, least);
 }
 

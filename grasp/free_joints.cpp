@@ -10,10 +10,10 @@
 namespace opponens::grasp {
 namespace {
 
-constexpr double kCloses = 0.5;      // share above which a joint counts as closing
-constexpr double kSpare = 0.02;      // of a joint's range kept from its open end
-constexpr double kOpenShare = 0.55;  // of a closing joint's range that postures start from
-constexpr double kPreGrasp = 0.1;    // of every joint's range, half width of the open hand's box
+constexpr double kClosingShare = 0.5;  // share above which a joint counts as closing
+constexpr double kFromTheEnd = 0.02;   // of a joint's range kept from its open end
+constexpr double kOpenShare = 0.55;    // of a closing joint's range that postures start from
+constexpr double kPreGrasp = 0.1;      // of every joint's range, half width of the open hand's box
 
 }  // namespace
 
@@ -39,12 +39,12 @@ FreeJoints free_joints(const robot::RobotModel& hand) {
   Eigen::VectorXd half_width = 0.5 * range;
   Eigen::VectorXd open = center;
   for (Eigen::Index j = 0; j < closing.size(); ++j) {
-    if (std::abs(closing[j]) < kCloses) continue;
+    if (std::abs(closing[j]) < kClosingShare) continue;
     const double end = closing[j] > 0.0 ? hand.lower()[j] : hand.upper()[j];
     const double inward = closing[j] > 0.0 ? range[j] : -range[j];
-    half_width[j] = 0.5 * (kOpenShare - kSpare) * range[j];
-    center[j] = end + 0.5 * (kOpenShare + kSpare) * inward;
-    open[j] = end + (kPreGrasp + kSpare) * inward;
+    half_width[j] = 0.5 * (kOpenShare - kFromTheEnd) * range[j];
+    center[j] = end + 0.5 * (kOpenShare + kFromTheEnd) * inward;
+    open[j] = end + (kPreGrasp + kFromTheEnd) * inward;
   }
   const auto box = [&](const Eigen::VectorXd& middle, const Eigen::VectorXd& half) {
     SynergyBox result;

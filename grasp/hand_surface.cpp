@@ -14,13 +14,13 @@
 namespace opponens::grasp {
 namespace {
 
-constexpr double kSparse = 0.02;        // m
-constexpr double kCoarse = 0.009;       // m
-constexpr double kDense = 0.0025;       // m
-constexpr double kGridSpacing = 0.003;  // m, of link meshes
-constexpr double kGridMargin = 0.02;    // m, fingers pass each other nearer than this only rarely
-constexpr std::size_t kGridNodes = 100000;
-constexpr double kHorizon = 1.0;  // m, no hand is larger
+constexpr double kSparseSpacing = 0.02;     // m
+constexpr double kCoarseSpacing = 0.009;    // m
+constexpr double kDenseSpacing = 0.0025;    // m
+constexpr double kLinkGridSpacing = 0.003;  // m, of link meshes
+constexpr double kLinkGridMargin = 0.02;    // m, fingers pass each other nearer than this only rarely
+constexpr std::size_t kLinkGridNodes = 100000;
+constexpr double kWholeHand = 1.0;  // m, no hand is larger
 
 std::vector<Eigen::Vector3d> samples(const std::vector<robot::Geometry>& geometry, double spacing) {
   std::vector<Eigen::Vector3d> points;
@@ -57,7 +57,7 @@ void add_bounding_spheres(HandSurface& surface) {
   for (const auto& shape : surface.shapes) {
     const bool empty = shape->points.empty();
     surface.link_center.push_back(empty ? Eigen::Vector3d::Zero().eval() : shape->points.center());
-    surface.link_radius.push_back((empty ? 0.0 : shape->points.radius()) + kDense);
+    surface.link_radius.push_back((empty ? 0.0 : shape->points.radius()) + kDenseSpacing);
   }
 }
 
@@ -152,17 +152,20 @@ void find_approach(const robot::RobotModel& hand, const Eigen::VectorXd& q, Hand
 }  // namespace
 
 LinkShape::LinkShape(const std::vector<robot::Geometry>& geometry)
-    : sparse(samples(geometry, kSparse)), coarse(samples(geometry, kCoarse)), points(samples(geometry, kDense)), body(geometry) {
+    : sparse(samples(geometry, kSparseSpacing)),
+      coarse(samples(geometry, kCoarseSpacing)),
+      points(samples(geometry, kDenseSpacing)),
+      body(geometry) {
   if (std::none_of(geometry.begin(), geometry.end(), is_mesh) || points.empty()) return;
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& p : points.points()) box.extend(p);
-  grid =
-      std::make_unique<const DistanceGrid>([this](const Eigen::Vector3d& p) { return body.query(p, kHorizon).value; },
-                                           box, DistanceGrid::Layout{kGridSpacing, kGridMargin, kGridNodes}, 1);
+  grid = std::make_unique<const DistanceGrid>(
+      [this](const Eigen::Vector3d& p) { return body.query(p, kWholeHand).value; }, box,
+      DistanceGrid::Layout{kLinkGridSpacing, kLinkGridMargin, kLinkGridNodes}, 1);
 }
 
 double LinkShape::rough(const Eigen::Vector3d& p_L) const {
-  return grid ? grid->bound(p_L) : body.query(p_L, kHorizon).value;
+  return grid ? grid->bound(p_L) : body.query(p_L, kWholeHand).value;
 }
 
 HandSurface hand_surface(const robot::RobotModel& hand, const Eigen::VectorXd& q) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cgal_hull_peer.hpp"
 
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -32,11 +33,13 @@ CgalHull cgal_hull(const Eigen::Matrix<double, 6, Eigen::Dynamic>& points) {
       ++count;
     }
     const Eigen::Matrix<double, 6, 5> edges = corners.rightCols<5>().colwise() - corners.col(0);
-    Eigen::Matrix<double, 6, 1> normal =
-        edges.colPivHouseholderQr().householderQ() * Eigen::Matrix<double, 6, 1>::Unit(5);
+    const Eigen::ColPivHouseholderQR<Eigen::Matrix<double, 6, 5>> qr(edges);
+    ++hull.facets;
+    // Exact predicates see the rounding of coplanar edges of a friction cone as slivers, whose planes mean nothing.
+    if (std::abs(qr.matrixR()(4, 4)) < 1e-9 * std::abs(qr.matrixR()(0, 0))) continue;
+    Eigen::Matrix<double, 6, 1> normal = qr.householderQ() * Eigen::Matrix<double, 6, 1>::Unit(5);
     if (normal.dot(corners.col(0) - center) < 0.0) normal = -normal;
     hull.least_offset = std::min(hull.least_offset, normal.dot(corners.col(0)));
-    ++hull.facets;
   }
   return hull;
 }

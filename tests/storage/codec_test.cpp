@@ -53,6 +53,8 @@ Grasp grasp() {
   value.quality.direction << 1, 2, 3, 4, 5, 6;
   value.quality.convention = {ContactModel::soft_finger, 0.7,  12,    ForceUnit::force,
                               WrenchNorm::linf,          0.08, 0.003, Eigen::Vector3d(0, 0, 1)};
+  value.quality.convention.cone = FrictionCone::quadratic;
+  value.quality.epsilon_gap = 0.25;
   value.certificate =
       Certificate{{{1, {0.1, 0.2, 0.3}, 0.25, "123456789012345678901234567890"}, {0, {-1, 0, 0}, 0.0, "7"}}, 0.125};
   value.synergy_grasp = false;
@@ -136,6 +138,8 @@ TEST(Codec, Grasp) {
   EXPECT_EQ(back.quality.convention.unit, ForceUnit::force);
   EXPECT_EQ(back.quality.convention.norm, WrenchNorm::linf);
   EXPECT_EQ(back.quality.convention.edges, 12);
+  EXPECT_EQ(back.quality.convention.cone, FrictionCone::quadratic);
+  EXPECT_EQ(back.quality.epsilon_gap, 0.25);
   EXPECT_EQ(back.quality.convention.rho, 0.08);
   EXPECT_EQ(back.quality.convention.torsion_radius, 0.003);
   EXPECT_EQ(back.quality.convention.mu, 0.7);
