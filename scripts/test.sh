@@ -45,7 +45,7 @@ case "$part" in
 esac
 
 # Under the sanitizers without the install test, the long flows, whole grasp searches and simulations of statistics, which
-# belong to the release build. Compiled by Clang, which takes half of GCC's time for it, and libFuzzer is Clang's: one
+# belong to the release build. Compiled by Clang, which is quicker at it than GCC, and libFuzzer is Clang's: one
 # build serves both. Without -Werror: the release build holds to GCC's warnings.
 # UBSan without null and object-size, which ASan sees, and alignment; the readers of outside bytes have them too.
 sanitize_build() {  # TARGET

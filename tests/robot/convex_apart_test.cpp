@@ -15,6 +15,7 @@
 #include "robot/convex_distance.hpp"
 #include "robot/convex_hull.hpp"
 #include "robot_test.hpp"
+#include "tests/support/sample_count.hpp"
 
 namespace opponens::robot {
 namespace {
@@ -68,7 +69,7 @@ TEST(HullVertices, ReachAsFarAsTheMeshInEveryDirection) {
     const HullVertices hull = hull_vertices(all[m]);
     EXPECT_EQ(hull.all.count % 8, 0);
     EXPECT_EQ(hull.all.xyz.size(), 3U * static_cast<std::size_t>(hull.all.count));
-    for (int i = 0; i < 2000; ++i) {
+    for (int i = 0; i < sample_count(2000); ++i) {
       const Vector3d n = random_direction(rng);
       const double lack = missing(all[m], hull, n);
       EXPECT_LE(lack, hull.rounding) << m << " " << n.transpose();
@@ -165,7 +166,7 @@ TEST(ConvexRelation, OverlappingStaysSoWhereverOneIsMovedByTheDepth) {
   constexpr double kDepth = 1e-3;
   Rng rng(5);
   int overlapping = 0;
-  for (int i = 0; i < 5000; ++i) {
+  for (int i = 0; i < sample_count(5000); ++i) {
     const Pair pair = random_pair(rng);
     const CollisionShape a(pair.a);
     const CollisionShape b(pair.b);
@@ -178,7 +179,7 @@ TEST(ConvexRelation, OverlappingStaysSoWhereverOneIsMovedByTheDepth) {
       EXPECT_TRUE(intersect(a, pair.X_WA, b, X_WB)) << i;
     }
   }
-  EXPECT_GT(overlapping, 300);
+  EXPECT_GT(overlapping, sample_count(300));
 }
 
 TEST(ConvexApart, NeverWhereTheTwoMeetAndNearlyAlwaysBeyondAMillimetre) {
@@ -188,7 +189,7 @@ TEST(ConvexApart, NeverWhereTheTwoMeetAndNearlyAlwaysBeyondAMillimetre) {
   int asked = 0;
   int missed = 0;
   int missed_by_spheres = 0;
-  for (int i = 0; i < 20000; ++i) {
+  for (int i = 0; i < sample_count(20000); ++i) {
     const Pair pair = random_pair(rng);
     const CollisionShape a(pair.a);
     const CollisionShape b(pair.b);
@@ -207,7 +208,7 @@ TEST(ConvexApart, NeverWhereTheTwoMeetAndNearlyAlwaysBeyondAMillimetre) {
     const double centers = (pair.X_WA.translation() - pair.X_WB.translation()).norm();
     missed_by_spheres += centers > a.radius() + b.radius() ? 0 : 1;
   }
-  ASSERT_GT(asked, 5000);
+  ASSERT_GT(asked, sample_count(5000));
   const boost::math::binomial_distribution<> null(asked, 1e-3);
   const double bound = boost::math::quantile(boost::math::complement(null, 1e-4));
   EXPECT_LE(missed, bound);
@@ -218,7 +219,7 @@ TEST(ConvexApart, MeshesLikewise) {
   Rng rng(6);
   int asked = 0;
   int found = 0;
-  for (int i = 0; i < 2000; ++i) {
+  for (int i = 0; i < sample_count(2000); ++i) {
     const Pair pair = random_pair(rng);
     const CollisionShape a(meshed(pair.a));
     const CollisionShape b(meshed(pair.b));
@@ -230,7 +231,7 @@ TEST(ConvexApart, MeshesLikewise) {
     ++asked;  // the meshes lie within the primitives
     found += apart ? 1 : 0;
   }
-  ASSERT_GT(asked, 500);
+  ASSERT_GT(asked, sample_count(500));
   const boost::math::binomial_distribution<> null(asked, 1e-3);  // as above
   EXPECT_LE(asked - found, boost::math::quantile(boost::math::complement(null, 1e-4)));
 }
@@ -238,7 +239,7 @@ TEST(ConvexApart, MeshesLikewise) {
 TEST(ConvexApart, PushedTogetherUntilTheyTouch) {
   // The verdict changes within a few micrometres of contact, and only on the far side of it.
   Rng rng(5);
-  for (int i = 0; i < 1000; ++i) {
+  for (int i = 0; i < sample_count(1000); ++i) {
     Pair pair = random_pair(rng);
     const CollisionShape a(pair.a);
     const CollisionShape b(pair.b);
