@@ -187,6 +187,21 @@ TEST(PrecisionRun, NeverKeepsAPointThatIsNotFinite) {
   EXPECT_THROW(PrecisionRun(problem, lost, bench.box), std::invalid_argument);
 }
 
+TEST(PrecisionRun, EitherSolverComesNearerToAGrasp) {
+  const Bench bench(test::scene_of(robot::Sphere{0.035}), test::power_synergies().group.box);
+  PrecisionProblem problem(bench.space);
+  Rng rng = stream(76, "run");
+  const auto seed = draw_tip_seed(bench.space, rng);
+  ASSERT_TRUE(seed.has_value());
+  for (const PrecisionSolver solver : {PrecisionSolver::slsqp, PrecisionSolver::cobyla}) {
+    PrecisionRun run(problem, *seed, bench.box);
+    const double before = problem.evaluate(run.start(), false).violation();
+    solve(run, problem, solver, 150);
+    ASSERT_TRUE(run.best().has_value());
+    EXPECT_LT(problem.evaluate(*run.best(), false).violation(), 0.8 * before);
+  }
+}
+
 TEST(FreeBox, IsTheJointsThemselves) {
   const SynergyBox box = free_box(test::allegro());
   EXPECT_LT((box.center + box.half_width - test::allegro().upper()).norm(), 1e-12);
