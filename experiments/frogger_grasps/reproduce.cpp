@@ -11,6 +11,7 @@
 namespace opponens {
 namespace {
 
+constexpr double kZero = 1e-6;     // a published value below is no force closure worth a ratio
 constexpr double kSameGap = 2e-5;  // m, a grasp whose largest gap is the published one to this is reconstructed
 
 struct Differences {
@@ -56,8 +57,8 @@ int reproduce(const Folders& folders, const robot::RobotModel& hand, std::ostrea
       closed += ours.force_closure ? 1 : 0;
       for (Differences* set : {&all, reconstructed ? &same : nullptr}) {
         if (set == nullptr) continue;
-        set->min_weight.push_back(std::abs(ours.min_weight / grasp.min_weight - 1.0));
-        set->epsilon.push_back(std::abs(ours.epsilon / grasp.epsilon - 1.0));
+        if (grasp.min_weight > kZero) set->min_weight.push_back(std::abs(ours.min_weight / grasp.min_weight - 1.0));
+        if (grasp.epsilon > kZero) set->epsilon.push_back(std::abs(ours.epsilon / grasp.epsilon - 1.0));
       }
       csv << file << ',' << grasp.index << ',' << grasp.min_weight << ',' << ours.min_weight << ',' << grasp.epsilon
           << ',' << ours.epsilon << ',' << 1e3 * grasp.surface_violation << ',' << 1e3 * gap << ',' << reconstructed

@@ -21,6 +21,12 @@ double cpu_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
+/// What a valid grasp is held to, beside force closure and touching tips.
+struct Bounds {
+  double depth;         ///< m
+  double joint_beyond;  ///< rad
+};
+
 /// The grasps of one side on one object.
 struct Side {
   std::vector<double> min_weight, epsilon, face_min_weight, face_epsilon, seconds;
@@ -29,7 +35,7 @@ struct Side {
 };
 
 void add(const FroggerObject& object, const robot::RobotModel& hand, grasp::TipModel model, const Posture& posture,
-         double depth, double seconds, Side& side, std::ostream& csv) {
+         const Bounds& bounds, double seconds, Side& side, std::ostream& csv) {
   const double mu = object.reference.mu;
   const Score by_distance =
       score(object, tip_contacts(hand, object.surface, object.target, model, posture, NormalRule::distance, mu));
@@ -37,8 +43,8 @@ void add(const FroggerObject& object, const robot::RobotModel& hand, grasp::TipM
       score(object, tip_contacts(hand, object.surface, object.target, model, posture, NormalRule::face, mu));
   const double gap = largest_gap(hand, object.surface, object.target, model, posture);
   const double clearance = least_clearance(hand, object, posture);
-  const bool valid =
-      by_distance.force_closure && gap <= kContactBound && clearance >= -depth && hand.within_limits(posture.q, 1e-9);
+  const bool valid = by_distance.force_closure && gap <= kContactBound && clearance >= -bounds.depth &&
+                     hand.within_limits(posture.q, bounds.joint_beyond);
   side.min_weight.push_back(by_distance.min_weight);
   side.epsilon.push_back(by_distance.epsilon);
   side.face_min_weight.push_back(by_face.min_weight);
@@ -52,10 +58,11 @@ void add(const FroggerObject& object, const robot::RobotModel& hand, grasp::TipM
 
 Side theirs(const FroggerObject& object, const robot::RobotModel& hand, std::ostream& csv) {
   Side side;
-  for (const ReferenceGrasp& grasp : object.reference.valid) {
+  const ReferenceFile& file = object.reference;
+  const Bounds bounds{file.depth + file.collision_tolerance, file.joint_tolerance};
+  for (const ReferenceGrasp& grasp : file.valid) {
     csv << object.reference.object << ",frogger,," << grasp.index << ",,";
-    add(object, hand, grasp::TipModel::fixed_point, posture_of(grasp), object.reference.depth, grasp.seconds, side,
-        csv);
+    add(object, hand, grasp::TipModel::fixed_point, posture_of(grasp), bounds, grasp.seconds, side, csv);
   }
   return side;
 }
@@ -88,7 +95,7 @@ Side ours(const FroggerObject& object, const robot::RobotModel& hand, const Comp
       continue;
     }
     const Grasp& grasp = found.grasps.front();
-    add(object, hand, settings.tips, {grasp.X_OH, grasp.q_grasp}, settings.max_penetration, seconds, side, csv);
+    add(object, hand, settings.tips, {grasp.X_OH, grasp.q_grasp}, {settings.max_penetration, 1e-9}, seconds, side, csv);
   }
   return side;
 }

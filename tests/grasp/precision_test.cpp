@@ -125,7 +125,7 @@ void expect_slopes(const Bench& bench, std::uint64_t seed) {
   Rng rng = stream(seed, "problem");
   PrecisionProblem problem(bench.space);
   int active = 0;
-  for (int i = 0; i < 12; ++i) {
+  for (int i = 0; i < 6; ++i) {
     const auto start = draw_tip_seed(bench.space, rng);
     ASSERT_TRUE(start.has_value());
     problem.place(*start);
@@ -155,7 +155,7 @@ void expect_slopes(const Bench& bench, std::uint64_t seed) {
       }
     }
   }
-  EXPECT_GT(active, 20);
+  EXPECT_GT(active, 10);
 }
 
 TEST(PrecisionProblem, SlopesEqualCentralDifferencesForFreeJoints) { expect_slopes(Bench(brick_on_a_table()), 73); }
@@ -185,6 +185,21 @@ TEST(PrecisionRun, NeverKeepsAPointThatIsNotFinite) {
   HandSeed lost = *seed;
   lost.X_OH.translation().x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(PrecisionRun(problem, lost, bench.box), std::invalid_argument);
+}
+
+TEST(PrecisionRun, EitherSolverComesNearerToAGrasp) {
+  const Bench bench(test::scene_of(robot::Sphere{0.035}), test::power_synergies().group.box);
+  PrecisionProblem problem(bench.space);
+  Rng rng = stream(76, "run");
+  const auto seed = draw_tip_seed(bench.space, rng);
+  ASSERT_TRUE(seed.has_value());
+  for (const PrecisionSolver solver : {PrecisionSolver::slsqp, PrecisionSolver::cobyla}) {
+    PrecisionRun run(problem, *seed, bench.box);
+    const double before = problem.evaluate(run.start(), false).violation();
+    solve(run, problem, solver, 150);
+    ASSERT_TRUE(run.best().has_value());
+    EXPECT_LT(problem.evaluate(*run.best(), false).violation(), 0.8 * before);
+  }
 }
 
 TEST(FreeBox, IsTheJointsThemselves) {
