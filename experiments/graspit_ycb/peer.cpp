@@ -13,7 +13,10 @@ namespace {
 std::vector<std::string> split(const std::string& line) {
   std::vector<std::string> fields;
   std::stringstream stream(line);
-  for (std::string field; std::getline(stream, field, ',');) fields.push_back(field);
+  for (std::string field; std::getline(stream, field, ',');) {
+    if (!field.empty() && field.back() == '\r') field.pop_back();  // lines end as on another system
+    fields.push_back(field);
+  }
   return fields;
 }
 
