@@ -12,7 +12,7 @@ namespace opponens::grasp {
 
 enum class PrecisionSolver {
   slsqp,   ///< sequential quadratic programming with the problem's slopes (Kraft 1988)
-  cobyla,  ///< linear models, no slopes (Powell 1994): for a check, and where slopes mislead; ten times the evaluations
+  cobyla,  ///< linear models, no slopes (Powell 1994): a check; needs many times the evaluations
 };
 
 /// The run of one optimiser over one problem. Every point that it visits is judged here, so that neither its return
