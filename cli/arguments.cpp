@@ -183,6 +183,7 @@ void declare_grasp(CLI::App& app, GraspOptions& options) {
       ->excludes(most)
       ->excludes(least);
   app.add_flag("--free-joints", options.free_joints, "Search over all joints of the hand, not along synergies");
+  app.add_flag("--tips", options.tips, "Precision grasps: the finger tips alone touch, optimised for l*");
   app.add_option("--import", options.import, "Check and store the grasps of this file; no search");
   declare_grasp_limits(app, options);
 }

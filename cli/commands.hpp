@@ -78,6 +78,7 @@ struct GraspOptions {
   double max_penetration = 0.001;  ///< m, of the hand into the object
   double clearance = 0.01;         ///< m, of the pre-grasp from the object
   bool free_joints = false;        ///< search over all joints, not along synergies
+  bool tips = false;               ///< precision grasps: finger tips alone touch
   GraspNoise noise{};              ///< samples 0: no quality under errors
   std::string import{};            ///< file of grasps made elsewhere; empty: search
 };

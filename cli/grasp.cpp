@@ -113,13 +113,21 @@ void say_found(const Task& task, const std::string& what, const grasp::SearchRes
   task.console.say(line);
 }
 
+grasp::SearchResult search(const Task& task, const SynergyGroup& group, const SynergyBox& pre_grasp) {
+  const auto accept = [&task](Grasp& candidate) { return task.reach(candidate); };
+  const std::uint64_t seed = task.options.common.seed;
+  if (task.options.tips) {
+    const auto settings = precision_settings(task.options, task.search_world.target, task.settings.threads);
+    return grasp::search_precision_grasps(task.search_world, group, &pre_grasp, settings, seed, accept);
+  }
+  Progress progress(task.console, "grasps of " + group.name);
+  return grasp::search_grasps(task.search_world, group, pre_grasp, task.settings, seed, accept,
+                              [&progress](std::int64_t done, std::int64_t total) { progress.update(done, total); });
+}
+
 void search_group(const Task& task, const SynergyGroup& group, const SynergyBox& pre_grasp,
                   const std::vector<SynergyGroup>& named, GraspTally& tally) {
-  Progress progress(task.console, "grasps of " + group.name);
-  grasp::SearchResult found = grasp::search_grasps(
-      task.search_world, group, pre_grasp, task.settings, task.options.common.seed,
-      [&task](Grasp& candidate) { return task.reach(candidate); },
-      [&progress](std::int64_t done, std::int64_t total) { progress.update(done, total); });
+  grasp::SearchResult found = search(task, group, pre_grasp);
   if (task.options.free_joints) {  // what a free grasp is along the groups that there are
     for (Grasp& one : found.grasps) {
       const SynergyGroup& nearest = named[grasp::nearest_group(named, one.q_grasp)];
@@ -212,7 +220,8 @@ int grasp(const GraspOptions& options, const Console& console) {
   if (!options.import.empty()) {
     import_file(task, groups, tally);
   } else if (options.free_joints) {
-    const grasp::FreeJoints free = grasp::free_joints(world.hand);
+    grasp::FreeJoints free = grasp::free_joints(world.hand);
+    if (options.tips) free.group.box = grasp::free_box(world.hand);  // tips are placed, they do not close
     search_group(task, free.group, free.pre_grasp, groups, tally);
   } else {
     for (const auto& group : groups) search_group(task, group, synergies.value.pre_grasp.box, groups, tally);

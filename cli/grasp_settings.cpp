@@ -22,6 +22,23 @@ grasp::SearchSettings search_settings(const GraspOptions& options, int threads) 
   return settings;
 }
 
+grasp::PrecisionSettings precision_settings(const GraspOptions& options, const grasp::GraspTarget& target,
+                                            int threads) {
+  const grasp::SearchSettings common = search_settings(options, threads);
+  grasp::PrecisionSettings settings;
+  settings.count = common.count;
+  settings.enough = std::max(settings.enough, 2 * common.count);
+  settings.max_trials = options.trials.value_or(std::min(common.max_trials, settings.max_trials));
+  settings.mu = common.mu;
+  settings.convention = grasp::default_convention(target, common.mu);
+  settings.convention->edges = common.edges;
+  settings.max_penetration = common.max_penetration;
+  settings.clearance_pregrasp = common.clearance_pregrasp;
+  settings.distances = common.distances;
+  settings.threads = threads;
+  return settings;
+}
+
 Json settings_json(const GraspOptions& options) {
   const grasp::SearchSettings settings = search_settings(options, 1);
   return {{"count", settings.count},
@@ -33,6 +50,7 @@ Json settings_json(const GraspOptions& options) {
           {"clearance", settings.clearance_pregrasp},
           {"slack_bound", settings.slack_bound},
           {"free_joints", options.free_joints},
+          {"tips", options.tips},
           {"noise",
            {{"position", options.noise.position},
             {"angle", options.noise.angle},

@@ -13,6 +13,7 @@
 
 #include "analysis/synergy_box.hpp"
 #include "core/require.hpp"
+#include "grasp/certificate.hpp"
 #include "grasp/quality.hpp"
 #include "grasp/tip_seed.hpp"
 
@@ -158,6 +159,12 @@ PrecisionTrial precision_trial(const PrecisionSearch& search, Rng& rng) {
   grasp.X_OH = pose.X_OH;
   grasp.contacts = std::move(contacts);
   grasp.quality = std::move(quality);
+  grasp.certificate = certify(grasp.contacts, grasp.quality);
+  if (!grasp.certificate) return rejected("closure cannot be certified");
+  if (search.accept) {
+    std::string reason = search.accept(grasp);
+    if (!reason.empty()) return rejected(std::move(reason));
+  }
   return {std::move(grasp), {}, problem.evaluations()};
 }
 
@@ -192,16 +199,20 @@ SearchResult search_precision_grasps(const robot::RobotModel& hand, const robot:
                                      const std::string& object, const SynergyGroup& group, const SynergyBox* pre_grasp,
                                      const PrecisionSettings& settings, std::uint64_t seed) {
   validate(settings);
-  require(group.box.center.size() == hand.dof() && group.box.half_width.size() > 0,
+  return search_precision_grasps(make_search_world(hand, scene, object, settings.threads), group, pre_grasp, settings,
+                                 seed);
+}
+
+SearchResult search_precision_grasps(const SearchWorld& world, const SynergyGroup& group, const SynergyBox* pre_grasp,
+                                     const PrecisionSettings& settings, std::uint64_t seed, const Accept& accept) {
+  validate(settings);
+  require(group.box.center.size() == world.hand.dof() && group.box.half_width.size() > 0,
           "search_precision_grasps: the synergy box must be of the hand's joints, with at least one synergy");
-  const GraspTarget target = make_target(scene, object, settings.threads);
-  const Eigen::VectorXd middle = hand.clip(group.box.scale.cwiseProduct(group.box.center));
-  const HandSurface surface = hand_surface(hand, middle);
-  const HandCheckers checkers = hand_checkers(hand, scene, object);
-  const PrecisionSpace space = make_precision_space(
-      hand, surface, target, group.box, settings.tips,
-      settings.convention.value_or(default_convention(target, settings.mu)), settings.goal, settings.max_penetration);
-  return search_precision_grasps({space, settings, checkers, group.name, pre_grasp}, seed);
+  const PrecisionSpace space =
+      make_precision_space(world.hand, world.surface, world.target, group.box, settings.tips,
+                           settings.convention.value_or(default_convention(world.target, settings.mu)), settings.goal,
+                           settings.max_penetration);
+  return search_precision_grasps({space, settings, world.checkers, group.name, pre_grasp, accept}, seed);
 }
 
 }  // namespace opponens::grasp

@@ -118,6 +118,16 @@ class Options(Grasp):
         near = self.grasp("--clearance", 0.0, "--count", 1000)
         self.assertGreater(counted(clear, "no clear pre-grasp"), counted(near, "no clear pre-grasp"))
 
+    def test_tips(self):
+        pinched = self.grasp("--tips", "--free-joints", "--trials", 60, "--count", 2)
+        self.assertGreater(len(pinched["grasps"]), 0)
+        for one in pinched["grasps"]:
+            links = [contact["link"] for contact in one["contacts"]]
+            self.assertEqual(len(links), len(set(links)))  # a tip each, and nothing else
+            self.assertEqual(len(links), 4)
+            self.assertTrue(one["certified"])
+            self.assertGreater(one["arm_solutions"], 0)
+
     def test_free_joints(self):
         free = self.grasp("--free-joints", "--trials", 192)
         self.assertEqual([group["name"] for group in free["groups"]], ["free joints"])
