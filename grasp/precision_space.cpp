@@ -18,6 +18,7 @@ PrecisionSpace make_precision_space(const robot::RobotModel& hand, const HandSur
                                     const GraspTarget& target, const SynergyBox& box, TipModel model,
                                     const QualityConvention& convention, PrecisionGoal goal, double max_penetration) {
   require(convention.norm == WrenchNorm::l1, "precision grasps: the quality's norm must be L1");
+  require(convention.cone == FrictionCone::pyramid, "precision grasps: the quality's friction cones must be pyramids");
   const Eigen::Matrix3Xd& v = target.mesh->vertices;
   const Eigen::Vector3d lower = v.rowwise().minCoeff().array() - kFieldMargin;
   const Eigen::Vector3d upper = v.rowwise().maxCoeff().array() + kFieldMargin;
