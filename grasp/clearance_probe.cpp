@@ -109,8 +109,9 @@ void ClearanceProbe::measure(Clearance& least) {
 
 double ClearanceProbe::from_obstacles(const Eigen::Isometry3d& X_OH, std::size_t link, double least) const {
   if (scene_.target.obstacles.empty()) return least;
-  const auto distance = [this](const Eigen::Vector3d& p_O) {
-    return scene_.target.obstacle_distance(p_O, kFarthest).value;
+  const double horizon = scene_.surface.link_radius[link] + obstacle_margin_ + std::max(least, 0.0);
+  const auto distance = [this, horizon](const Eigen::Vector3d& p_O) {
+    return scene_.target.obstacle_distance(p_O, horizon).value;
   };
   return nearest(distance, link, X_OH * X_HL_[link], obstacle_margin_, least);
 }

@@ -33,6 +33,9 @@ class DistanceGrid {
   double value(const Eigen::Vector3d& p) const;  ///< the same without gradient, twice as fast
   /// Inside the grid the value, outside a lower bound of the distance (but for error()) instead of an upper one.
   double bound(const Eigen::Vector3d& p) const;
+  bool holds(const Eigen::Vector3d& p) const {
+    return (p.array() >= lower_.array()).all() && (p.array() <= upper_.array()).all();
+  }
   double spacing() const { return spacing_; }
   /// Bound of |value - distance| inside the grid, m: the nodes are exact, the distance changes by at most 1 m per m,
   /// and a weighted mean of the nodes' distances from a point of a cell is largest in its middle.

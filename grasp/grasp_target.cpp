@@ -15,15 +15,24 @@ namespace {
 constexpr double kGridSpacing = 0.003;  // m
 constexpr double kGridMargin = 0.03;    // m
 constexpr std::size_t kGridNodes = 150000;
-constexpr double kSurfaceSpacing = 0.0025;  // m
+constexpr double kObstacleSpacing = 0.016;   // m
+constexpr double kObstacleGridMargin = 0.2;  // m, around the object: where hands that hold it are
+constexpr double kObstacleHorizon = 0.06;    // m, farther ones need not be told exactly
+constexpr double kSurfaceSpacing = 0.0025;   // m
 constexpr double kSurfacePoints = 40000.0;
 
 }  // namespace
 
 SignedDistance GraspTarget::obstacle_distance(const Eigen::Vector3d& p_O, double horizon) const {
+  if (obstacle_grid && obstacle_grid->holds(p_O)) {
+    const double least = obstacle_grid->value(p_O) - obstacle_grid->error();
+    if (least >= horizon) return {least, obstacle_grid->query(p_O).gradient};
+  }
   SignedDistance nearest{std::numeric_limits<double>::infinity(), Eigen::Vector3d::UnitZ()};
   for (const Obstacle& obstacle : obstacles) {
-    const SignedDistance d = obstacle.distance.query(obstacle.X_BO * p_O, horizon);
+    // What is beyond the nearest so far need not be known exactly.
+    const SignedDistance d =
+        obstacle.distance.query(obstacle.X_BO * p_O, std::max(0.0, std::min(horizon, nearest.value)));
     if (d.value < nearest.value) nearest = {d.value, obstacle.X_BO.linear().transpose() * d.gradient};
   }
   return nearest;
@@ -57,6 +66,12 @@ GraspTarget make_target(const robot::Scene& scene, const std::string& object, in
   for (const robot::SceneBody& other : scene.bodies) {
     if (other.name == object || other.geometry.empty()) continue;
     target.obstacles.push_back({other.name, BodyDistance(other.geometry), other.X_WB.inverse() * target.X_WO});
+  }
+  if (!target.obstacles.empty()) {
+    const Eigen::AlignedBox3d box(vertices.rowwise().minCoeff(), vertices.rowwise().maxCoeff());
+    target.obstacle_grid = std::make_shared<const DistanceGrid>(
+        [&target](const Eigen::Vector3d& p) { return target.obstacle_distance(p, kObstacleHorizon).value; }, box,
+        DistanceGrid::Layout{kObstacleSpacing, kObstacleGridMargin, kGridNodes}, threads);
   }
   return target;
 }

@@ -36,6 +36,8 @@ struct GraspTarget {
   Eigen::Vector3d center_of_mass;   ///< uniform density; mean of the vertices for an open mesh
   double rho;                       ///< m, largest distance of a vertex from it
   std::vector<Obstacle> obstacles;  ///< every other body of the scene
+  /// Of a lower bound of their distance, within 20 cm of the object; null: there are none.
+  std::shared_ptr<const DistanceGrid> obstacle_grid;
 
   /// Distance of p_O to the nearest obstacle, and its gradient; a lower bound beyond horizon.
   SignedDistance obstacle_distance(const Eigen::Vector3d& p_O, double horizon) const;

@@ -32,7 +32,7 @@ using namespace opponens;
 struct Bench {
   robot::RobotModel hand;
   grasp::FreeJoints free = grasp::free_joints(hand);
-  std::vector<std::unique_ptr<grasp::SearchWorld>> worlds;
+  std::vector<std::unique_ptr<grasp::SearchWorld>> worlds{};
 };
 
 void add_world(Bench& bench, const robot::Shape& shape) {

@@ -15,12 +15,6 @@
 namespace opponens::grasp {
 namespace {
 
-Matrix6Xd cross_polytope() {
-  Matrix6Xd w(6, 12);
-  w << Eigen::Matrix<double, 6, 6>::Identity(), -Eigen::Matrix<double, 6, 6>::Identity();
-  return w;
-}
-
 Matrix6Xd cube() {
   Matrix6Xd w(6, 64);
   for (int j = 0; j < 64; ++j) {
@@ -32,7 +26,7 @@ Matrix6Xd cube() {
 OriginBall l1_ball(const Matrix6Xd& w) { return largest_origin_ball(WrenchSpace(w, 1, WrenchNorm::l1)); }
 
 TEST(OriginBall, CrossPolytopeByHand) {
-  const OriginBall ball = l1_ball(cross_polytope());
+  const OriginBall ball = l1_ball(test::cross_polytope());
   EXPECT_TRUE(ball.inside);
   EXPECT_NEAR(ball.radius, 1.0 / std::sqrt(6.0), 1e-14);
   EXPECT_TRUE(ball.converged);
@@ -49,13 +43,13 @@ TEST(OriginBall, CubeWithSixteenPointsOnEachFacet) {
 }
 
 TEST(OriginBall, MinkowskiSumOfSegmentsIsTheCube) {
-  const OriginBall ball = largest_origin_ball(WrenchSpace(cross_polytope(), 1, WrenchNorm::linf));
+  const OriginBall ball = largest_origin_ball(WrenchSpace(test::cross_polytope(), 1, WrenchNorm::linf));
   EXPECT_TRUE(ball.inside);
   EXPECT_NEAR(ball.radius, 1.0, 1e-13);
 }
 
 TEST(OriginBall, OutsideIsMinusTheDistanceWithTheSeparatingDirection) {
-  Matrix6Xd w = cross_polytope();
+  Matrix6Xd w = test::cross_polytope();
   w.row(2).array() += 2.5;  // nearest point: 1.5 along axis 2
   const OriginBall ball = l1_ball(w);
   EXPECT_FALSE(ball.inside);
@@ -66,7 +60,7 @@ TEST(OriginBall, OutsideIsMinusTheDistanceWithTheSeparatingDirection) {
 
 TEST(OriginBall, OriginOnTheBoundaryIsNotInside) {
   for (const double shift : {1.0, -1.0}) {
-    Matrix6Xd vertex = cross_polytope();
+    Matrix6Xd vertex = test::cross_polytope();
     vertex.row(4).array() += shift;
     EXPECT_FALSE(l1_ball(vertex).inside);
     EXPECT_NEAR(l1_ball(vertex).radius, 0.0, 1e-12);

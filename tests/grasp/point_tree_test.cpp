@@ -51,20 +51,20 @@ TEST(PointTree, FindsTheLeastValueOfAllPointsWithFewOfThem) {
       const Eigen::Isometry3d X = random_pose(rng);
       double truth = std::numeric_limits<double>::infinity();
       for (const Vector3d& p : tree.points()) truth = std::min(truth, exact.signed_distance(X * p));
-      // From exact distances, and from a grid whose error is told.
-      const auto look = [&](double bound) {
-        return [&, bound](const Vector3d& p, const Vector3d& there) mutable {
-          ++visited;
-          EXPECT_EQ(X * p, there);
-          return bound = std::min(bound, exact.signed_distance(there));
-        };
+      double bound = 1.0;
+      const auto look = [&](const Vector3d& p, const Vector3d& there) {
+        ++visited;
+        EXPECT_EQ(X * p, there);
+        return bound = std::min(bound, exact.signed_distance(there));
       };
       all += 2 * static_cast<std::int64_t>(tree.points().size());
+      // From exact distances, and from a grid whose error is told.
       const auto distance = [&](const Vector3d& p) { return exact.signed_distance(p); };
-      EXPECT_EQ(tree.descend(distance, X, 1.0, look(1.0)), truth);
+      EXPECT_EQ(tree.descend(distance, X, bound, look), truth);
+      EXPECT_EQ(tree.descend(distance, X, truth, look), truth);  // nothing is below the bound
+      bound = 1.0;
       const auto rough = [&](const Vector3d& p) { return grid.bound(p) - grid.error() - 1e-6; };
-      EXPECT_EQ(tree.descend(rough, X, 1.0, look(1.0)), truth);
-      EXPECT_EQ(tree.descend(distance, X, truth, look(truth)), truth);  // nothing is below the bound
+      EXPECT_EQ(tree.descend(rough, X, bound, look), truth);
     }
   }
   EXPECT_LT(visited, all / 5);

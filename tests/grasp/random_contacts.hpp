@@ -24,4 +24,11 @@ inline std::vector<Contact> random_contacts(int count, double spread, Rng& rng) 
   return contacts;
 }
 
+/// The unit vectors of R^6 and their opposites: the ball in it has radius 1/sqrt(6).
+inline Eigen::Matrix<double, 6, Eigen::Dynamic> cross_polytope() {
+  Eigen::Matrix<double, 6, Eigen::Dynamic> w(6, 12);
+  w << Eigen::Matrix<double, 6, 6>::Identity(), -Eigen::Matrix<double, 6, 6>::Identity();
+  return w;
+}
+
 }  // namespace opponens::test

@@ -16,16 +16,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-Matrix6Xd cross_polytope() {
-  Matrix6Xd w(6, 12);
-  w << Eigen::Matrix<double, 6, 6>::Identity(), -Eigen::Matrix<double, 6, 6>::Identity();
-  return w;
-}
-
 TEST(TaskWrench, CrossPolytopeAndCubeByHand) {
   // |w|_1 <= 1: the ray along (2, 0, ...) ends at 1/2, along (1, ..., 1) at 1/6. Sum of the segments: |w|_max <= 1.
-  const WrenchSpace l1(cross_polytope(), 1, WrenchNorm::l1);
-  const WrenchSpace linf(cross_polytope(), 1, WrenchNorm::linf);
+  const WrenchSpace l1(test::cross_polytope(), 1, WrenchNorm::l1);
+  const WrenchSpace linf(test::cross_polytope(), 1, WrenchNorm::linf);
   EXPECT_NEAR(load_factor(l1, 2.0 * Vector6d::Unit(0)).factor, 0.5, 1e-14);
   EXPECT_NEAR(load_factor(l1, Vector6d::Ones()).factor, 1.0 / 6.0, 1e-14);
   EXPECT_NEAR(load_factor(linf, Vector6d::Ones()).factor, 1.0, 1e-9);
@@ -108,7 +102,7 @@ TEST(TaskWrench, LeastFactorOfUnitLoadsIsEpsilon) {
 }
 
 TEST(TaskWrench, BrokenContractsThrow) {
-  const WrenchSpace space(cross_polytope(), 1, WrenchNorm::l1);
+  const WrenchSpace space(test::cross_polytope(), 1, WrenchNorm::l1);
   EXPECT_THROW(load_factor(space, Vector6d::Zero()), std::invalid_argument);
   EXPECT_THROW(task_quality(space, Matrix6Xd(6, 0)), std::invalid_argument);
   EXPECT_THROW(load_against_gravity(-1.0, Vector3d::Zero(), Vector3d::UnitZ(), {}), std::invalid_argument);
