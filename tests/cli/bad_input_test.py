@@ -120,7 +120,7 @@ class BadInput(unittest.TestCase):
             self.assertEqual(code, 2, arguments)
             self.assertEqual(out, "")
             self.assertTrue(err)
-        for arguments in (["fly"], ["fly", "--help"], ["quality", "x"]):
+        for arguments in (["fly"], ["fly", "--help"], ["grasps", "x"]):
             self.refuse(2, [arguments[0] + ": no such command"], *arguments)
         self.refuse(2, ["nobody"], "grasp", "--store", self.store, "--group", "nobody")
         self.refuse(2, ["opponens grasp"], "plan", "--store", self.store)

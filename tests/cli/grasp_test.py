@@ -189,10 +189,13 @@ class Import(Grasp):
         out = self.root / "export.json"
         must("export", "--store", self.store, "--format", "json", "--out", out)
         exported = json.loads(out.read_text())
-        keep = {grasp["id"] for grasp in self.plain["grasps"]} | {
+        order = [grasp["id"] for grasp in self.plain["grasps"]]
+        documents = {one["id"]: one for one in exported.pop("grasps")}
+        self.assert_same(self.take({"schema": exported["schema"], "grasps": [documents[id] for id in order]}))
+        # The stored objects alone, as exports of before had them.
+        keep = set(order) | {
             one["id"] for one in exported["objects"] if one["kind"] == "synergy_set"}
         exported["objects"] = [one for one in exported["objects"] if one["id"] in keep]
-        order = [grasp["id"] for grasp in self.plain["grasps"]]
         exported["objects"].sort(key=lambda one: order.index(one["id"]) if one["id"] in order else -1)
         self.assert_same(self.take(exported))
         # Without the synergies the joints have no names: taken for the same robot, refused for another.
