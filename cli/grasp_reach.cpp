@@ -16,9 +16,10 @@ Reach::Reach(const NamedWorld& world, double max_penetration)
       X_RO_(world.X_RO()) {}
 
 std::string Reach::operator()(Grasp& grasp) const {
-  constexpr double kResolution = 0.02;  // rad, spacing of the checks along a closing segment
+  constexpr double kResolution = 0.02;   // rad, spacing of the checks along a closing segment
+  constexpr double kSampledShare = 0.9;  // of the depth that `verify` holds the whole segment to
   return motion::reach(grasp, world_.robot, kinematics_, X_RO_, free_space_, closing_, kResolution,
-                       {&depth_, max_penetration_});
+                       {&depth_, kSampledShare * max_penetration_});
 }
 
 }  // namespace opponens::cli

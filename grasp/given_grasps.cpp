@@ -61,9 +61,8 @@ GivenGrasp check_one(const Checks& checks, const HandPose& given, const Accept& 
   grasp.quality = evaluate(grasp.contacts, given_convention(checks));
   if (!grasp.quality.force_closure()) return {std::nullopt, "not force closure"};
   if (!grasp.quality.epsilon) return {std::nullopt, "epsilon did not converge"};
-  GraspLimits limits{std::vector<bool>(world.hand.links().size(), false), settings.max_penetration,
-                     settings.clearance_pregrasp};
-  for (const Contact& contact : grasp.contacts) limits.touching[world.hand.link_index(contact.link)] = true;
+  const GraspLimits limits =
+      grasp_limits(world.hand, links_of(grasp.contacts), settings.max_penetration, settings.clearance_pregrasp);
   if (std::string fault = posture_fault(scene, checks.checkers, posture, limits); !fault.empty()) {
     return {std::nullopt, fault};
   }

@@ -15,6 +15,7 @@ namespace {
 constexpr double kObstacleClearance = 0.001;  // m, of a grasp from support and obstacles
 constexpr double kSelfClearance = 0.0005;     // m, between fingers: what a path keeps (design: "Verification")
 constexpr double kOtherClearance = 0.0005;    // m, of links without a contact from the object
+constexpr double kBetweenPoints = 1e-4;       // m, of penetration that a verdict may miss
 constexpr int kSweepSteps = 12;
 
 /// The straight motion from grasp to pre-grasp at s in [0, 1].
@@ -152,6 +153,20 @@ HandCheckers hand_checkers(const robot::RobotModel& hand, const robot::Scene& sc
   std::vector<robot::BodyPair> contacts;
   for (const robot::Link& link : hand.links()) contacts.emplace_back(link.name, object);
   return {robot::CollisionChecker(hand, scene), robot::CollisionChecker(hand, scene, std::move(contacts))};
+}
+
+GraspLimits grasp_limits(const robot::RobotModel& hand, const std::vector<std::string>& touching,
+                         double max_penetration, double clearance_pregrasp) {
+  GraspLimits limits{std::vector<bool>(hand.links().size(), false),
+                     std::max(max_penetration - kBetweenPoints, 0.5 * max_penetration), clearance_pregrasp};
+  for (const std::string& link : touching) limits.touching[static_cast<std::size_t>(hand.link_index(link))] = true;
+  return limits;
+}
+
+std::vector<std::string> links_of(const std::vector<Contact>& contacts) {
+  std::vector<std::string> links;
+  for (const Contact& contact : contacts) links.push_back(contact.link);
+  return links;
 }
 
 std::string posture_fault(const ClosingScene& scene, const HandCheckers& checkers, const HandPose& pose,

@@ -38,6 +38,13 @@ struct GraspLimits {
   double clearance_pregrasp;   ///< m
 };
 
+/// Links with contacts may touch, and penetrate by max_penetration, m, less what may lie between the 2.5 mm apart
+/// points that a verdict looks at (a ball of 12 mm reaches 0.065 mm beyond the chord of two) and its samples of a
+/// motion: 0.1 mm, at most half of it. `verify` holds a grasp's whole motion to the bound itself.
+GraspLimits grasp_limits(const robot::RobotModel& hand, const std::vector<std::string>& touching,
+                         double max_penetration, double clearance_pregrasp);
+std::vector<std::string> links_of(const std::vector<Contact>& contacts);
+
 /// Why a posture is no grasp, or an empty string: penetration beyond the bound, a link without a contact nearer than
 /// 0.5 mm to the object, support or obstacle nearer than 1 mm, fingers nearer than 0.5 mm to each other, or a collision
 /// by the collision truth. Obstacles and colliding pairs are named: "too near to an obstacle: NAME", "hand in

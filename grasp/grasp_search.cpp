@@ -87,9 +87,8 @@ Trial attempt(const Search& search, const HandPose& start, double incumbent) {
   if (!quality.force_closure()) return rejected("not force closure");
   if (!quality.epsilon) return rejected("epsilon did not converge");  // grasps are ranked by it
   if (*quality.epsilon <= incumbent) return rejected("no better");
-  GraspLimits limits{std::vector<bool>(world.hand.links().size(), false), settings.max_penetration,
-                     settings.clearance_pregrasp};
-  for (const Contact& contact : contacts) limits.touching[world.hand.link_index(contact.link)] = true;
+  const GraspLimits limits =
+      grasp_limits(world.hand, links_of(contacts), settings.max_penetration, settings.clearance_pregrasp);
   const std::string fault = posture_fault(scene, world.checkers, *closed, limits);
   if (!fault.empty()) return rejected(fault);
   const auto pregrasp = find_pregrasp(scene, world.checkers, search.pre_grasp, *closed, limits);

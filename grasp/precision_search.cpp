@@ -21,9 +21,6 @@ namespace opponens::grasp {
 namespace {
 
 constexpr double kGapAtMost = 2e-5;  // m, of a returned grasp's tips
-// m: the verdict's points are 2.5 mm apart, and a ball of 12 mm reaches 0.065 mm (s^2 / 8 r) beyond the chord between
-// two.
-constexpr double kBetweenPoints = 1e-4;
 
 std::vector<Contact> contacts_of(const PrecisionSpace& space, const std::vector<TipTouch>& touches) {
   std::vector<Contact> contacts;
@@ -135,10 +132,9 @@ PrecisionTrial precision_trial(const PrecisionSearch& search, Rng& rng) {
   if (!quality.epsilon) return rejected("epsilon did not converge");
   const HandSeed best = problem.at(*x);
   const HandPose pose{best.X_OH, analysis::configuration(space.box, best.y)};
-  GraspLimits limits{std::vector<bool>(space.hand.links().size(), false),
-                     std::max(space.max_penetration - kBetweenPoints, 0.5 * space.max_penetration),
-                     search.settings.clearance_pregrasp};
-  for (const FingerTip& tip : space.tips) limits.touching[static_cast<std::size_t>(tip.link)] = true;
+  // All tips may touch, also one that is 0.02 mm away.
+  const GraspLimits limits =
+      grasp_limits(space.hand, links_of(contacts), space.max_penetration, search.settings.clearance_pregrasp);
   const Eigen::VectorXd still = Eigen::VectorXd::Zero(space.hand.dof());
   const Eigen::VectorXd direction =
       search.pre_grasp != nullptr ? closing_direction(space.box, *search.pre_grasp) : still;

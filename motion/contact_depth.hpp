@@ -59,7 +59,8 @@ class ContactDepth {
 /// The largest depth that a closing segment may have. Without a measure it is not bounded.
 struct ContactLimit {
   const ContactDepth* depth = nullptr;
-  double max_depth = 0.001;  ///< m
+  /// m. Paths are asked at their samples, and `verify` holds all of their motion to 1 mm: a tenth is kept in hand.
+  double max_depth = 0.0009;
 };
 
 }  // namespace opponens::motion
