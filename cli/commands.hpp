@@ -71,6 +71,7 @@ struct GraspOptions {
   int count = 5;
   int max_trials = 2000;
   int min_trials = 256;
+  int improvements = 30;
   std::optional<int> trials{};     ///< exactly so many, in place of both bounds
   double mu = 0.5;                 ///< friction coefficient
   int edges = 8;                   ///< of a friction cone

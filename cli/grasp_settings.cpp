@@ -13,6 +13,7 @@ grasp::SearchSettings search_settings(const GraspOptions& options, int threads) 
   settings.count = options.count;
   settings.max_trials = options.trials.value_or(options.max_trials);
   settings.min_trials = options.trials.value_or(options.min_trials);
+  settings.improvements = options.improvements;
   settings.mu = options.mu;
   settings.edges = options.edges;
   settings.max_penetration = options.max_penetration;
@@ -44,6 +45,7 @@ Json settings_json(const GraspOptions& options) {
   return {{"count", settings.count},
           {"max_trials", settings.max_trials},
           {"min_trials", settings.min_trials},
+          {"improvements", settings.improvements},
           {"mu", settings.mu},
           {"edges", settings.edges},
           {"max_penetration", settings.max_penetration},

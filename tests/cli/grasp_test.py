@@ -100,6 +100,15 @@ class Options(Grasp):
         few = self.grasp("--edges", 3)
         self.assertLess(max(g["epsilon"] for g in few["grasps"]), max(g["epsilon"] for g in self.plain["grasps"]))
 
+    def test_improvements(self):
+        plain = self.grasp("--improvements", 0)
+        best = {group: max(g["epsilon"] for g in self.plain["grasps"] if g["group"] == group) for group in self.groups
+                if any(g["group"] == group for g in self.plain["grasps"])}
+        for group, epsilon in best.items():
+            self.assertGreaterEqual(epsilon, max(g["epsilon"] for g in plain["grasps"] if g["group"] == group))
+        self.assertGreater(sum(best.values()), sum(
+            max(g["epsilon"] for g in plain["grasps"] if g["group"] == group) for group in best))
+
     def test_slack_bound_labels(self):
         self.assertFalse(any(g["synergy_grasp"] for g in self.grasp("--slack-bound", 0)["grasps"]))
         wide = self.grasp("--slack-bound", 100)["grasps"]
