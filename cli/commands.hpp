@@ -70,8 +70,8 @@ struct GraspOptions {
   std::string group = "all";
   int count = 5;
   int max_trials = 2000;
-  int min_trials = 256;
-  int improvements = 30;
+  int min_trials = 128;
+  int improvements = 15;
   std::optional<int> trials{};     ///< exactly so many, in place of both bounds
   double mu = 0.5;                 ///< friction coefficient
   int edges = 8;                   ///< of a friction cone

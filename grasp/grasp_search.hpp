@@ -23,7 +23,7 @@ namespace opponens::grasp {
 struct SearchSettings {
   int count = 5;                   ///< grasps to return
   int max_trials = 2000;           ///< seeds tried; the search stops on this count, never on a clock
-  int min_trials = 256;            ///< no early stop before this many, though `count` grasps exist: more trials, better
+  int min_trials = 128;            ///< no early stop before this many, though `count` grasps exist: more trials, better
                                    ///< grasps
   double mu = 0.5;                 ///< friction coefficient
   int edges = 8;                   ///< friction cone edges
@@ -31,7 +31,7 @@ struct SearchSettings {
   double contact_tolerance = 0.001;  ///< m, a contact point closer than this to the surface touches
   double clearance_pregrasp = 0.01;  ///< m, least distance hand-object at the pre-grasp
   double slack_bound = 0.3;          ///< rad, 2-norm of a synergy grasp's slack (docs/deviations.md, 6)
-  int improvements = 30;             ///< closings from neighbouring poses of each of the best 2 count grasps
+  int improvements = 15;             ///< closings from neighbouring poses of each of the best 2 count grasps
   GraspDistances distances;          ///< of returned grasps from each other
   int threads = 1;
 };

@@ -70,7 +70,9 @@ TEST(DistanceGrid, StaysNearTheMeshAndItsGradientIsItsOwnSlope) {
     const SignedDistance d = grid.query(p);
     EXPECT_NEAR(d.value, grid.value(p), 1e-15);
     const double error = std::abs(d.value - exact.signed_distance(p));
-    if (grid.holds(p)) EXPECT_LE(error, grid.error() + 1e-7);  // nodes are kept in single precision
+    if (grid.holds(p)) {
+      EXPECT_LE(error, grid.error() + 1e-7);  // nodes are kept in single precision
+    }
     if (std::abs(d.value) < 0.02) worst_near = std::max(worst_near, error);
     const Vector3d u = (Vector3d(rng.normal(), rng.normal(), rng.normal())).normalized();
     const double slope = (grid.value(p + 1e-8 * u) - grid.value(p - 1e-8 * u)) / 2e-8;
