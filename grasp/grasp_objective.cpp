@@ -11,12 +11,12 @@
 #include <nlopt.h>
 
 #include "analysis/synergy_box.hpp"
+#include "grasp/pose_chart.hpp"
 
 namespace opponens::grasp {
 namespace {
 
-constexpr double kPositionUnit = 0.1;  // m per unit of x: brings positions to the size of angles
-constexpr double kReach = 0.02;        // m, scale of the contact cost
+constexpr double kReach = 0.02;  // m, scale of the contact cost
 constexpr double kBalanceWeight = 3.0;
 constexpr double kFacingDepth = 0.01;       // m
 constexpr double kPenetrationUnit = 0.005;  // m
@@ -26,28 +26,6 @@ constexpr double kLimitUnit = 0.1;      // rad
 constexpr double kLimitWeight = 0.5;
 constexpr double kMaxShift = 0.05;  // m
 constexpr double kMaxTurn = 0.6;    // rad
-
-Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d m;
-  m << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
-  return m;
-}
-
-Eigen::Matrix3d rotation(const Eigen::Vector3d& w) {
-  const double angle = w.norm();
-  if (angle < 1e-12) return Eigen::Matrix3d::Identity() + skew(w);
-  return Eigen::AngleAxisd(angle, w / angle).toRotationMatrix();
-}
-
-/// d exp(w) = [J dw]x exp(w): the left Jacobian of SO(3) (Chirikjian 2012, section 10.8.6).
-Eigen::Matrix3d left_jacobian(const Eigen::Vector3d& w) {
-  const double angle = w.norm();
-  const Eigen::Matrix3d s = skew(w);
-  if (angle < 1e-6) return Eigen::Matrix3d::Identity() + 0.5 * s;
-  const double a2 = angle * angle;
-  return Eigen::Matrix3d::Identity() + (1.0 - std::cos(angle)) / a2 * s +
-         (angle - std::sin(angle)) / (a2 * angle) * s * s;
-}
 
 struct DestroyOptimizer {
   void operator()(nlopt_opt_s* optimizer) const { nlopt_destroy(optimizer); }
@@ -82,10 +60,7 @@ GraspObjective::GraspObjective(const robot::RobotModel& hand, const HandSurface&
 }
 
 HandSeed GraspObjective::at(const HandSeed& seed, const Eigen::VectorXd& x) const {
-  HandSeed result{seed.X_OH, x.tail(size() - 6)};
-  result.X_OH.linear() = rotation(x.segment<3>(3)) * seed.X_OH.linear();
-  result.X_OH.translation() = seed.X_OH.translation() + kPositionUnit * x.head<3>();
-  return result;
+  return {chart_pose(seed.X_OH, x.head<6>()), x.tail(size() - 6)};
 }
 
 void GraspObjective::add(std::size_t link, const Eigen::Vector3d& p_H, const Eigen::Vector3d& gradient_H) {
@@ -204,8 +179,8 @@ double GraspObjective::evaluate(const HandSeed& seed, const Eigen::VectorXd& x, 
   }
   const Eigen::VectorXd slope_q = joint_gradient() + 2.0 * kLimitWeight / kLimitUnit * violation;
   gradient->resize(size());
-  gradient->head<3>() = kPositionUnit * (point.X_OH.linear() * total.force);
-  gradient->segment<3>(3) = left_jacobian(x.segment<3>(3)).transpose() * (point.X_OH.linear() * total.torque);
+  gradient->head<3>() = kChartPosition * (point.X_OH.linear() * total.force);
+  gradient->segment<3>(3) = turning_jacobian(x.segment<3>(3)).transpose() * (point.X_OH.linear() * total.torque);
   gradient->tail(size() - 6) = box_.axes.transpose() * box_.scale.cwiseProduct(slope_q);
   return cost;
 }
@@ -214,7 +189,7 @@ HandSeed optimize_seed(GraspObjective& objective, const HandSeed& seed, const Ei
                        int max_evaluations) {
   const int n = objective.size();
   Eigen::VectorXd lower(n);
-  lower << Eigen::Vector3d::Constant(-kMaxShift / kPositionUnit), Eigen::Vector3d::Constant(-kMaxTurn), -half_width;
+  lower << Eigen::Vector3d::Constant(-kMaxShift / kChartPosition), Eigen::Vector3d::Constant(-kMaxTurn), -half_width;
   const Eigen::VectorXd upper = -lower;
   Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
   x.tail(n - 6) = seed.y.cwiseMax(-half_width).cwiseMin(half_width);

@@ -3,12 +3,8 @@
 #include "grasp/grasp_search.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <exception>
-#include <mutex>
 #include <optional>
-#include <thread>
 #include <utility>
 
 #include "analysis/synergy_box.hpp"
@@ -23,6 +19,7 @@
 #include "grasp/grasp_target.hpp"
 #include "grasp/hand_seed.hpp"
 #include "grasp/hand_surface.hpp"
+#include "grasp/in_parallel.hpp"
 #include "grasp/quality.hpp"
 
 namespace opponens::grasp {
@@ -147,28 +144,6 @@ Grasp improve(const Search& search, Grasp grasp, std::size_t rank) {
     scale = std::clamp(scale * (kept ? 1.5 : 0.9), 0.1, 1.5);
   }
   return grasp;
-}
-
-/// work(i) for i in [0, count) on the settings' threads, in any order.
-void in_parallel(int threads, int count, const std::function<void(int)>& work) {
-  std::atomic<int> next{0};
-  std::mutex guard;
-  std::exception_ptr error;
-  const auto run = [&] {
-    try {
-      for (int i = next++; i < count; i = next++) work(i);
-    } catch (...) {
-      const std::lock_guard lock(guard);
-      if (!error) error = std::current_exception();
-      next = count;
-    }
-  };
-  {
-    std::vector<std::jthread> workers;
-    for (int t = 1; t < threads; ++t) workers.emplace_back(run);
-    run();
-  }
-  if (error) std::rethrow_exception(error);
 }
 
 /// Runs trials [first, first + count); results in trial order whatever the thread count.

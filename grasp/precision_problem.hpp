@@ -10,7 +10,7 @@
 
 #include "core/grasp.hpp"
 #include "grasp/grasp_objective.hpp"
-#include "grasp/precision_chart.hpp"
+#include "grasp/pose_chart.hpp"
 #include "grasp/precision_space.hpp"
 #include "grasp/tip_contact.hpp"
 

@@ -3,17 +3,14 @@
 #include "grasp/precision_search.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <exception>
-#include <mutex>
-#include <thread>
 #include <utility>
 #include <vector>
 
 #include "analysis/synergy_box.hpp"
 #include "core/require.hpp"
 #include "grasp/certificate.hpp"
+#include "grasp/in_parallel.hpp"
 #include "grasp/quality.hpp"
 #include "grasp/tip_seed.hpp"
 
@@ -42,27 +39,10 @@ std::string fault_of(const PrecisionSearch& search, const HandPose& pose, const 
 std::vector<PrecisionTrial> run_trials(const PrecisionSearch& search, std::uint64_t seed, std::int64_t first,
                                        int count) {
   std::vector<PrecisionTrial> trials(static_cast<std::size_t>(count));
-  std::atomic<int> next{0};
-  std::mutex guard;
-  std::exception_ptr error;
-  const auto work = [&] {
-    try {
-      for (int i = next++; i < count; i = next++) {
-        Rng rng = stream(seed, "precision/" + search.group + "/" + std::to_string(first + i));
-        trials[static_cast<std::size_t>(i)] = precision_trial(search, rng);
-      }
-    } catch (...) {
-      const std::lock_guard lock(guard);
-      if (!error) error = std::current_exception();
-      next = count;
-    }
-  };
-  {
-    std::vector<std::jthread> workers;
-    for (int t = 1; t < std::min(search.settings.threads, count); ++t) workers.emplace_back(work);
-    work();
-  }
-  if (error) std::rethrow_exception(error);
+  in_parallel(search.settings.threads, count, [&](int i) {
+    Rng rng = stream(seed, "precision/" + search.group + "/" + std::to_string(first + i));
+    trials[static_cast<std::size_t>(i)] = precision_trial(search, rng);
+  });
   return trials;
 }
 

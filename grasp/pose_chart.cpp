@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The opponens authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "grasp/precision_chart.hpp"
+#include "grasp/pose_chart.hpp"
 
 #include <cmath>
 
@@ -13,7 +13,8 @@ Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
   return m;
 }
 
-/// d exp(w) = [J dw]x exp(w): the left Jacobian of SO(3) (Chirikjian 2012, section 10.8.6).
+}  // namespace
+
 Eigen::Matrix3d turning_jacobian(const Eigen::Vector3d& w) {
   const double angle = w.norm();
   const Eigen::Matrix3d s = cross_matrix(w);
@@ -22,8 +23,6 @@ Eigen::Matrix3d turning_jacobian(const Eigen::Vector3d& w) {
   return Eigen::Matrix3d::Identity() + (1.0 - std::cos(angle)) / a2 * s +
          (angle - std::sin(angle)) / (a2 * angle) * s * s;
 }
-
-}  // namespace
 
 Eigen::Isometry3d chart_pose(const Eigen::Isometry3d& X, const Eigen::Ref<const Eigen::VectorXd>& z) {
   const Eigen::Vector3d w = z.segment<3>(3);

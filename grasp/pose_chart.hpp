@@ -17,6 +17,10 @@ constexpr double kChartPosition = 0.1;
 /// the left by exp([w]x).
 Eigen::Isometry3d chart_pose(const Eigen::Isometry3d& X, const Eigen::Ref<const Eigen::VectorXd>& z);
 
+/// How the rotation of chart_pose turns with w: d exp([w]x) = [J dw]x exp([w]x), the left Jacobian of SO(3) (Chirikjian
+/// 2012, section 10.8.6).
+Eigen::Matrix3d turning_jacobian(const Eigen::Vector3d& w);
+
 /// The slope by [z; q] of a scalar that depends on points fixed to links of a free hand, summed point by point.
 class PointSlopes {
  public:
