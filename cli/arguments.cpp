@@ -182,13 +182,17 @@ void declare_grasp(CLI::App& app, GraspOptions& options) {
       ->check(CLI::Range(1, 100000000))
       ->excludes(most)
       ->excludes(least);
-  app.add_option("--improvements", options.improvements,
-                 "Closings from neighbouring poses of each of the best grasps; 0: none")
-      ->check(CLI::Range(0, 1000000))
-      ->capture_default_str();
+  CLI::Option* const improvements =
+      app.add_option("--improvements", options.improvements,
+                     "Closings from neighbouring poses of each of the best grasps; 0: none")
+          ->check(CLI::Range(0, 1000000))
+          ->capture_default_str();
   app.add_flag("--free-joints", options.free_joints, "Search over all joints of the hand, not along synergies");
-  app.add_flag("--tips", options.tips, "Precision grasps: the finger tips alone touch, optimised for l*");
-  app.add_option("--import", options.import, "Check and store the grasps of this file; no search");
+  CLI::Option* const tips =
+      app.add_flag("--tips", options.tips, "Precision grasps: the finger tips alone touch, optimised for l*")
+          ->excludes(improvements)
+          ->excludes(least);
+  app.add_option("--import", options.import, "Check and store the grasps of this file; no search")->excludes(tips);
   declare_grasp_limits(app, options);
 }
 

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cstdio>
+#include <limits>
 #include <optional>
+#include <set>
 
 #include "cli/commands.hpp"
 #include "cli/grasp_causes.hpp"
@@ -98,7 +100,9 @@ void say_none(const Task& task, const std::string& what, const grasp::SearchResu
 
 void say_found(const Task& task, const std::string& what, const grasp::SearchResult& found) {
   if (found.grasps.empty()) return say_none(task, what, found);
-  const Grasp& best = found.grasps.front();
+  const Grasp& best = *std::max_element(found.grasps.begin(), found.grasps.end(), [](const Grasp& a, const Grasp& b) {
+    return a.quality.epsilon.value_or(0.0) < b.quality.epsilon.value_or(0.0);
+  });
   char text[160];
   std::snprintf(text, sizeof text, ": %zu grasps in %lld trials, best epsilon %.4f", found.grasps.size(),
                 static_cast<long long>(found.trials), best.quality.epsilon.value_or(0.0));
@@ -116,13 +120,18 @@ void say_found(const Task& task, const std::string& what, const grasp::SearchRes
 grasp::SearchResult search(const Task& task, const SynergyGroup& group, const SynergyBox& pre_grasp) {
   const auto accept = [&task](Grasp& candidate) { return task.reach(candidate); };
   const std::uint64_t seed = task.options.common.seed;
-  if (task.options.tips) {
-    const auto settings = precision_settings(task.options, task.search_world.target, task.settings.threads);
-    return grasp::search_precision_grasps(task.search_world, group, &pre_grasp, settings, seed, accept);
-  }
   Progress progress(task.console, "grasps of " + group.name);
-  return grasp::search_grasps(task.search_world, group, pre_grasp, task.settings, seed, accept,
-                              [&progress](std::int64_t done, std::int64_t total) { progress.update(done, total); });
+  const auto show = [&progress](std::int64_t done, std::int64_t total) { progress.update(done, total); };
+  if (task.options.tips) {
+    auto settings = precision_settings(task.options, task.settings.threads);
+    settings.convention = grasp::default_convention(task.search_world.target, settings.mu);
+    settings.convention->edges = task.settings.edges;
+    return grasp::search_precision_grasps(task.search_world, group, &pre_grasp, settings, seed, accept, show);
+  }
+  grasp::SearchSettings settings = task.settings;
+  // Their box says where closing starts, not how far it may go.
+  if (task.options.free_joints) settings.slack_bound = std::numeric_limits<double>::infinity();
+  return grasp::search_grasps(task.search_world, group, pre_grasp, settings, seed, accept, show);
 }
 
 void search_group(const Task& task, const SynergyGroup& group, const SynergyBox& pre_grasp,
@@ -143,8 +152,12 @@ void search_group(const Task& task, const SynergyGroup& group, const SynergyBox&
 void import_file(const Task& task, const std::vector<SynergyGroup>& groups, GraspTally& tally) {
   const std::filesystem::path file(task.options.import);
   const ImportedPostures imported = import_grasps(file, task.world);
-  if (imported.object && *imported.object != task.world.object) {
-    task.console.advise(file.string() + ": its grasps are of " + *imported.object + ", not of " + task.world.object +
+  std::set<std::string> others;
+  for (const auto& one : imported.postures) {
+    if (one.object && *one.object != task.world.object) others.insert(*one.object);
+  }
+  for (const std::string& other : others) {
+    task.console.advise(file.string() + ": its grasps are of " + other + ", not of " + task.world.object +
                         "; they are taken in the frame of " + task.world.object);
   }
   std::vector<grasp::HandPose> postures;

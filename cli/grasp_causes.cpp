@@ -24,9 +24,15 @@ constexpr std::string_view kObstacle = "collision with the surroundings";
 constexpr std::string_view kRoomAdvice = "make room around the object";
 
 /// Reasons without a named pair of bodies; the first prefix that fits.
-constexpr std::array<Meaning, 13> kMeanings{{
+constexpr std::array<Meaning, 19> kMeanings{{
     {"no inverse kinematics", kReach, kReachAdvice},
+    {"outside the joint limits: ", "a hand joint beyond its limit", "check the file's joint names and units"},
     {"outside the joint limits", kReach, kReachAdvice},
+    {"joint beyond its limit", kGrip, kGripAdvice},
+    {"the tips do not reach the surface", kGrip, kGripAdvice},
+    {"no chord through the object", kGrip, kGripAdvice},
+    {"the optimiser met no finite point", kGrip, kGripAdvice},
+    {"closure cannot be certified", "not force closure", ""},
     {"too near to an obstacle", kObstacle, kRoomAdvice},
     {"no seed pose with a clear palm", "no room for the palm", kRoomAdvice},
     {"no clear pre-grasp", "no way to draw the open hand back",

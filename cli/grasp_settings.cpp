@@ -23,16 +23,14 @@ grasp::SearchSettings search_settings(const GraspOptions& options, int threads) 
   return settings;
 }
 
-grasp::PrecisionSettings precision_settings(const GraspOptions& options, const grasp::GraspTarget& target,
-                                            int threads) {
+grasp::PrecisionSettings precision_settings(const GraspOptions& options, int threads) {
   const grasp::SearchSettings common = search_settings(options, threads);
   grasp::PrecisionSettings settings;
   settings.count = common.count;
   settings.enough = std::max(settings.enough, 2 * common.count);
   settings.max_trials = options.trials.value_or(std::min(common.max_trials, settings.max_trials));
+  if (options.trials) settings.enough = std::max(settings.count, settings.max_trials);  // all of them
   settings.mu = common.mu;
-  settings.convention = grasp::default_convention(target, common.mu);
-  settings.convention->edges = common.edges;
   settings.max_penetration = common.max_penetration;
   settings.clearance_pregrasp = common.clearance_pregrasp;
   settings.distances = common.distances;
@@ -40,24 +38,42 @@ grasp::PrecisionSettings precision_settings(const GraspOptions& options, const g
   return settings;
 }
 
+namespace {
+
+/// Of precision grasps, in place of what only the other search has.
+Json precision_json(const GraspOptions& options) {
+  const auto settings = precision_settings(options, 1);
+  return {{"max_trials", settings.max_trials},
+          {"min_trials", nullptr},
+          {"improvements", nullptr},
+          {"enough", settings.enough},
+          {"draws", settings.draws},
+          {"max_evaluations", settings.max_evaluations},
+          {"goal", "min_weight"}};
+}
+
+}  // namespace
+
 Json settings_json(const GraspOptions& options) {
   const grasp::SearchSettings settings = search_settings(options, 1);
-  return {{"count", settings.count},
-          {"max_trials", settings.max_trials},
-          {"min_trials", settings.min_trials},
-          {"improvements", settings.improvements},
-          {"mu", settings.mu},
-          {"edges", settings.edges},
-          {"max_penetration", settings.max_penetration},
-          {"clearance", settings.clearance_pregrasp},
-          {"slack_bound", settings.slack_bound},
-          {"free_joints", options.free_joints},
-          {"tips", options.tips},
-          {"noise",
-           {{"position", options.noise.position},
-            {"angle", options.noise.angle},
-            {"friction", options.noise.friction},
-            {"samples", options.noise.samples}}}};
+  Json result = {{"count", settings.count},
+                 {"max_trials", settings.max_trials},
+                 {"min_trials", settings.min_trials},
+                 {"improvements", settings.improvements},
+                 {"mu", settings.mu},
+                 {"edges", settings.edges},
+                 {"max_penetration", settings.max_penetration},
+                 {"clearance", settings.clearance_pregrasp},
+                 {"slack_bound", settings.slack_bound},
+                 {"free_joints", options.free_joints},
+                 {"tips", options.tips},
+                 {"noise",
+                  {{"position", options.noise.position},
+                   {"angle", options.noise.angle},
+                   {"friction", options.noise.friction},
+                   {"samples", options.noise.samples}}}};
+  if (options.tips) result.update(precision_json(options));
+  return result;
 }
 
 std::vector<SynergyGroup> chosen_groups(const SynergySet& set, const GraspOptions& options) {

@@ -15,8 +15,8 @@ namespace opponens::cli {
 /// The options of `grasp` as the search's settings.
 grasp::SearchSettings search_settings(const GraspOptions& options, int threads);
 
-/// The same for precision grasps.
-grasp::PrecisionSettings precision_settings(const GraspOptions& options, const grasp::GraspTarget& target, int threads);
+/// The same for precision grasps, without a convention of quality.
+grasp::PrecisionSettings precision_settings(const GraspOptions& options, int threads);
 
 /// The same as they are recorded with what they made.
 Json settings_json(const GraspOptions& options);

@@ -107,7 +107,7 @@ Json parse(const std::filesystem::path& file) {
   if (!in) throw InputError(file.string() + ": cannot be read");
   try {
     return Json::parse(in);
-  } catch (const Json::parse_error& error) {
+  } catch (const Json::exception& error) {
     throw InputError(file.string() + ": is not JSON (" + error.what() + ")");
   }
 }
@@ -120,29 +120,43 @@ std::vector<std::string> names_at(const Json& json, const char* key, const std::
   return found->get<std::vector<std::string>>();
 }
 
+/// For each link whether no joint moves it against the palm.
+std::vector<bool> fixed_to_palm(const robot::RobotModel& robot) {
+  const robot::RobotDescription& d = robot.description();
+  const auto joint_of = [&d](std::size_t link) {
+    const int joint = d.links[link].joint;
+    return joint < 0 ? nullptr : &d.joints[static_cast<std::size_t>(joint)];
+  };
+  const auto is_fixed = [&](std::size_t link) {
+    const robot::Joint* const joint = joint_of(link);
+    return joint != nullptr && joint->type == robot::JointType::fixed;
+  };
+  auto root = static_cast<std::size_t>(robot.palm());
+  while (is_fixed(root)) root = static_cast<std::size_t>(joint_of(root)->parent);
+  std::vector<bool> fixed(d.links.size(), false);
+  fixed[root] = true;
+  for (std::size_t link = root + 1; link < d.links.size(); ++link) {  // parents come first
+    fixed[link] = is_fixed(link) && fixed[static_cast<std::size_t>(joint_of(link)->parent)];
+  }
+  return fixed;
+}
+
 /// X_BH: the palm H in the frame of the link that a file calls the hand's base. It has to be fixed to the palm.
 Eigen::Isometry3d palm_in_base(const std::string& base, const std::string& file, const NamedWorld& world) {
   const robot::RobotModel& robot = world.robot;
   const auto& links = robot.links();
-  const auto found = std::find_if(links.begin(), links.end(), [&](const robot::Link& link) {
-    return link.name == base ||
-           (link.name.size() > base.size() &&
-            link.name.compare(link.name.size() - base.size() - 1, std::string::npos, "/" + base) == 0);
-  });
-  if (found == links.end()) {
-    throw InputError(file + ": the hand's base is '" + base + "', and the robot has no link of that name");
+  const std::vector<bool> fixed = fixed_to_palm(robot);
+  bool known = false;
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    if (links[i].name != base && !links[i].name.ends_with("/" + base)) continue;
+    known = true;
+    if (!fixed[i]) continue;
+    const auto X_RL = robot.link_poses(robot.rest());
+    return X_RL[i].inverse() * X_RL[static_cast<std::size_t>(robot.palm())];
   }
-  const auto index = static_cast<std::size_t>(found - links.begin());
-  const auto at = [&](const Eigen::VectorXd& q) {
-    const auto X_RL = robot.link_poses(q);
-    return Eigen::Isometry3d(X_RL[index].inverse() * X_RL[static_cast<std::size_t>(robot.palm())]);
-  };
-  const Eigen::Isometry3d X_BH = at(robot.lower());
-  if (!X_BH.isApprox(at(robot.upper()), 1e-9)) {
-    throw InputError(file + ": the hand's base '" + base + "' moves against the palm " +
-                     links[static_cast<std::size_t>(robot.palm())].name + ", so it does not tell where the hand is");
-  }
-  return X_BH;
+  if (!known) throw InputError(file + ": the hand's base is '" + base + "', and the robot has no link of that name");
+  throw InputError(file + ": the hand's base '" + base + "' moves against the palm " +
+                   links[static_cast<std::size_t>(robot.palm())].name + ", so it does not tell where the hand is");
 }
 
 /// "palm_link of allegro_right_hand.urdf".
@@ -157,23 +171,30 @@ std::string base_link(const Json& json, const std::string& file) {
 
 std::string numbered(std::size_t index) { return std::string("grasp ").append(std::to_string(index)); }
 
+/// The object that a grasp, or else its file, names.
+std::optional<std::string> object_of(const Json& one, const Json& file) {
+  for (const Json* const json : {&one, &file}) {
+    const auto found = json->find("object");
+    if (found != json->end() && found->is_string() && !found->get<std::string>().empty()) return *found;
+  }
+  return std::nullopt;
+}
+
 ImportedPostures from_frogger(const Json& json, const std::string& file, const NamedWorld& world) {
-  ImportedPostures result{"frogger", {}, std::nullopt};
+  ImportedPostures result{"frogger", {}};
   const std::vector<std::string> names = names_at(json, "hand_joint_order", file);
   const Eigen::Isometry3d X_BH = palm_in_base(base_link(json, file), file, world);
-  if (json.contains("object") && json.at("object").is_string()) result.object = json.at("object");
   for (const Json& one : json.at("grasps")) {
     const Entry entry(file, numbered(result.postures.size()), one);
     const Eigen::Isometry3d X_OB = entry.pose(entry.field("X_object_handbase"), "X_object_handbase");
     const Eigen::VectorXd q = entry.joints(entry.named(names, entry.numbers("hand_q"), "hand_q"), world.hand);
-    result.postures.push_back({entry.name(), {X_OB * X_BH, q}});
+    result.postures.push_back({entry.name(), {X_OB * X_BH, q}, object_of(one, json)});
   }
   return result;
 }
 
 ImportedPostures from_document(const Json& json, const std::string& file, const NamedWorld& world) {
-  ImportedPostures result{"grasp", {}, std::nullopt};
-  if (json.contains("object") && json.at("object").is_string()) result.object = json.at("object");
+  ImportedPostures result{"grasp", {}};
   for (const Json& one : json.at("grasps")) {
     const Entry entry(file, numbered(result.postures.size()), one);
     const Json& joints = entry.field("joints");
@@ -181,7 +202,9 @@ ImportedPostures from_document(const Json& json, const std::string& file, const 
                       std::all_of(joints.begin(), joints.end(), [](const Json& value) { return value.is_number(); });
     if (!good) entry.fail("field 'joints': expected {name: rad}");
     result.postures.push_back(
-        {entry.name(), {entry.pose(entry.field("X_OH"), "X_OH"), entry.joints(joints.get<Numbers>(), world.hand)}});
+        {entry.name(),
+         {entry.pose(entry.field("X_OH"), "X_OH"), entry.joints(joints.get<Numbers>(), world.hand)},
+         object_of(one, json)});
   }
   return result;
 }
@@ -197,7 +220,7 @@ std::map<std::string, std::vector<std::string>> exported_joints(const Json& obje
 }
 
 ImportedPostures from_export(const Json& json, const std::string& file, const NamedWorld& world) {
-  ImportedPostures result{"export", {}, std::nullopt};
+  ImportedPostures result{"export", {}};
   const auto known = exported_joints(json.at("objects"));
   for (const Json& one : json.at("objects")) {
     if (one.value("kind", "") != kGrasp) continue;
@@ -205,7 +228,6 @@ ImportedPostures from_export(const Json& json, const std::string& file, const Na
     const Json& fields = entry.field("fields");
     const Json& origin = entry.field("provenance");
     const Json& made_for = origin.at("parameters").at("world");
-    result.object = made_for.at("object");
     const auto set = known.find(origin.at("inputs").at(0).get<std::string>());
     std::vector<std::string> names = world.hand.joint_names();
     if (set != known.end()) {
@@ -217,7 +239,8 @@ ImportedPostures from_export(const Json& json, const std::string& file, const Na
     const std::vector<double> q = entry.numbers(fields.at("q_grasp"), "q_grasp");
     result.postures.push_back(
         {entry.name(),
-         {entry.pose(fields.at("X_OH"), "X_OH"), entry.joints(entry.named(names, q, "q_grasp"), world.hand)}});
+         {entry.pose(fields.at("X_OH"), "X_OH"), entry.joints(entry.named(names, q, "q_grasp"), world.hand)},
+         object_of(made_for, json)});
   }
   return result;
 }

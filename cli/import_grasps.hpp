@@ -17,10 +17,10 @@ struct ImportedPostures {
   struct One {
     std::string name;  ///< in the file: "grasp 3", or the id of a stored grasp
     grasp::HandPose posture;
+    std::optional<std::string> object;  ///< that it was made for, as the file says
   };
   std::string form;  ///< "frogger", "grasp" (a document of grasp --json) or "export"
   std::vector<One> postures;
-  std::optional<std::string> object;  ///< that the file names
 };
 
 /// Reads grasps made elsewhere: FRoGGeR's JSON (X_object_handbase, hand_q in hand_joint_order, hand base = the link

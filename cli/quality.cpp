@@ -122,8 +122,11 @@ Json score(const ContactCase& one, const QualityOptions& options, const Console&
     convention.norm = norm;
     const GraspQuality quality =
         grasp::evaluate(one.contacts, convention, {options.volume, options.at_least, options.quadratic_gap});
-    if (!asked) certificate = certificate_of(one, quality.force_closure());  // closure does not depend on the norm
-    asked = true;
+    // Closure does not depend on the norm; a quality that was given up does not tell it.
+    if (!asked && quality.state != ClosureState::below_incumbent) {
+      certificate = certificate_of(one, quality.force_closure());
+      asked = true;
+    }
     Json result = {{"norm", norm_name(norm)},
                    {"epsilon", number(quality.epsilon)},
                    {"epsilon_gap", quality.epsilon ? Json(quality.epsilon_gap) : Json(nullptr)},

@@ -22,9 +22,9 @@ enum class Watch {
   everything,    ///< and the hand's other links
 };
 
-/// Least distances of the links' surface points to what they watch for, at most 5 cm. Beyond 2 mm they may be a tenth
-/// too small. Distances to the object come from its grid; within 2 mm those of the five least points are measured on
-/// the mesh. Keeps its memory between calls: one per thread.
+/// Least distances of the links' surface points to what they watch for, at most 5 cm. Beyond 2 mm a point nearer by
+/// up to a tenth may be missed. Distances to the object come from its grid; within 2 mm those of the five least points
+/// are measured on the mesh. Keeps its memory between calls: one per thread.
 class ClearanceProbe {
  public:
   explicit ClearanceProbe(const ClosingScene& scene);

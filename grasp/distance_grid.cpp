@@ -49,7 +49,7 @@ DistanceGrid::Cell DistanceGrid::locate(const Eigen::Vector3d& p) const {
   const Eigen::Vector3d scaled = (cell.inside - lower_) * (1.0 / spacing_);
   std::array<int, 3> corner;
   for (int i = 0; i < 3; ++i) {
-    corner[i] = std::min(static_cast<int>(scaled[i]), count_[i] - 2);  // not negative: truncation is the floor
+    corner[i] = std::clamp(static_cast<int>(scaled[i]), 0, count_[i] - 2);  // not negative: truncation is the floor
     cell.fraction[i] = scaled[i] - corner[i];
   }
   cell.node = nodes_.data() + (static_cast<std::size_t>(corner[2]) * count_.y() + corner[1]) * count_.x() + corner[0];

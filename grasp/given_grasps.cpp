@@ -111,10 +111,10 @@ std::vector<GivenGrasp> check_given(const GivenWorld& world, const std::vector<H
     require(posture.q.size() == world.hand.dof() && posture.q.allFinite() && posture.X_OH.matrix().allFinite(),
             "check_given: a posture is not finite, or not of this hand's joints");
   }
-  const SynergyBox& first = world.groups.at(0).box;
-  const Eigen::VectorXd mean = world.hand.clip(first.scale.cwiseProduct(first.center));
+  require(!world.groups.empty(), "check_given: there are no groups");
+  const Eigen::VectorXd middle = 0.5 * (world.hand.lower() + world.hand.upper());  // as the search
   const Checks checks{world, make_target(world.scene, world.object, world.settings.threads),
-                      hand_surface(world.hand, mean), hand_checkers(world.hand, world.scene, world.object)};
+                      hand_surface(world.hand, middle), hand_checkers(world.hand, world.scene, world.object)};
   std::vector<GivenGrasp> results;
   results.reserve(postures.size());
   for (const HandPose& posture : postures) results.push_back(check_one(checks, posture, accept));

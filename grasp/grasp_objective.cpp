@@ -39,6 +39,10 @@ struct Problem {
 double nlopt_cost(unsigned n, const double* x, double* gradient, void* data) {
   const Problem& problem = *static_cast<Problem*>(data);
   const Eigen::VectorXd point = Eigen::Map<const Eigen::VectorXd>(x, n);
+  if (!point.allFinite()) {  // NLopt has been seen to ask for NaN
+    if (gradient) Eigen::Map<Eigen::VectorXd>(gradient, n).setZero();
+    return std::numeric_limits<double>::infinity();
+  }
   Eigen::VectorXd slope;
   const double cost = problem.objective.evaluate(problem.seed, point, gradient ? &slope : nullptr);
   if (gradient) Eigen::Map<Eigen::VectorXd>(gradient, n) = slope;

@@ -154,22 +154,26 @@ std::vector<Trial> run_batch(const Search& search, std::int64_t first, int count
   return trials;
 }
 
-/// The best different ones, each taken uphill, and the best different ones of those.
-std::vector<Grasp> refined(const Search& search, std::vector<Grasp> candidates) {
+/// The best different ones of the candidates and of what they become when they are taken uphill (two may come together,
+/// so the starts stay candidates). Between rounds `pause` may throw.
+std::vector<Grasp> refined(const Search& search, std::vector<Grasp> candidates, const std::function<void()>& pause) {
   const SearchSettings& settings = search.settings;
-  const int starts = settings.improvements > 0 ? 2 * settings.count : settings.count;
-  const std::vector<std::size_t> chosen = distinct_grasps(candidates, starts, settings.distances);
-  std::vector<Grasp> grasps;
-  for (const std::size_t i : chosen) grasps.push_back(std::move(candidates[i]));
   if (settings.improvements > 0) {
-    in_parallel(settings.threads, static_cast<int>(grasps.size()), [&](int i) {
-      Grasp& grasp = grasps[static_cast<std::size_t>(i)];
-      grasp = improve(search, std::move(grasp), static_cast<std::size_t>(i));
-    });
+    const std::vector<std::size_t> starts = distinct_grasps(candidates, 2 * settings.count, settings.distances);
+    for (std::size_t first = 0; first < starts.size(); first += static_cast<std::size_t>(settings.threads)) {
+      const std::size_t round = std::min(static_cast<std::size_t>(settings.threads), starts.size() - first);
+      std::vector<Grasp> better(round);
+      in_parallel(settings.threads, static_cast<int>(round), [&](int i) {
+        const std::size_t rank = first + static_cast<std::size_t>(i);
+        better[rank - first] = improve(search, candidates[starts[rank]], rank);
+      });
+      for (Grasp& grasp : better) candidates.push_back(std::move(grasp));
+      pause();
+    }
   }
   std::vector<Grasp> best;
-  for (const std::size_t i : distinct_grasps(grasps, settings.count, settings.distances)) {
-    best.push_back(std::move(grasps[i]));
+  for (const std::size_t i : distinct_grasps(candidates, settings.count, settings.distances)) {
+    best.push_back(std::move(candidates[i]));
   }
   return best;
 }
@@ -245,7 +249,9 @@ SearchResult search_grasps(const SearchWorld& world, const SynergyGroup& group, 
     }
   }
   const std::size_t found = candidates.size();
-  result.grasps = refined(search, std::move(candidates));
+  result.grasps = refined(search, std::move(candidates), [&] {
+    if (progress) progress(result.trials, settings.max_trials);
+  });
   if (found > result.grasps.size()) {
     result.rejected["a better one was kept"] = static_cast<std::int64_t>(found - result.grasps.size());
   }

@@ -38,7 +38,8 @@ struct SearchSettings {
 void validate(const SearchSettings& settings);  ///< throws std::invalid_argument naming field, value, constraint
 
 struct SearchResult {
-  std::vector<Grasp> grasps;  ///< best first (epsilon), arm_solutions as `accept` left them
+  std::vector<Grasp>
+      grasps;  ///< best first (epsilon; precision grasps: by their goal), arm_solutions as `accept` left them
   std::int64_t trials = 0;
   std::int64_t evaluations = 0;                  ///< of the objective: in choosing seeds, and by NLopt
   std::map<std::string, std::int64_t> rejected;  ///< reason -> count; trials = grasps found + rejected

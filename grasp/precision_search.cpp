@@ -162,6 +162,7 @@ SearchResult search_precision_grasps(const PrecisionSearch& search, std::uint64_
         ++result.rejected[trial.reason];
       }
     }
+    if (search.progress) search.progress(result.trials, settings.max_trials);
   }
   const std::size_t accepted = found.size();
   result.grasps = best_of(std::move(found), settings);
@@ -180,7 +181,8 @@ SearchResult search_precision_grasps(const robot::RobotModel& hand, const robot:
 }
 
 SearchResult search_precision_grasps(const SearchWorld& world, const SynergyGroup& group, const SynergyBox* pre_grasp,
-                                     const PrecisionSettings& settings, std::uint64_t seed, const Accept& accept) {
+                                     const PrecisionSettings& settings, std::uint64_t seed, const Accept& accept,
+                                     const SearchProgress& progress) {
   validate(settings);
   require(group.box.center.size() == world.hand.dof() && group.box.half_width.size() > 0,
           "search_precision_grasps: the synergy box must be of the hand's joints, with at least one synergy");
@@ -188,7 +190,7 @@ SearchResult search_precision_grasps(const SearchWorld& world, const SynergyGrou
       make_precision_space(world.hand, world.surface, world.target, group.box, settings.tips,
                            settings.convention.value_or(default_convention(world.target, settings.mu)), settings.goal,
                            settings.max_penetration);
-  return search_precision_grasps({space, settings, world.checkers, group.name, pre_grasp, accept}, seed);
+  return search_precision_grasps({space, settings, world.checkers, group.name, pre_grasp, accept, progress}, seed);
 }
 
 }  // namespace opponens::grasp

@@ -46,6 +46,7 @@ struct PrecisionSearch {
   const std::string& group;
   const SynergyBox* pre_grasp = nullptr;  ///< null: no pre-grasp is looked for, its fields stay empty
   Accept accept = {};                     ///< an extra test, as of search_grasps; needs a pre-grasp
+  SearchProgress progress = {};
 };
 
 struct PrecisionTrial {
@@ -69,7 +70,8 @@ SearchResult search_precision_grasps(const robot::RobotModel& hand, const robot:
 
 /// The same in a world made by the caller, with an extra test.
 SearchResult search_precision_grasps(const SearchWorld& world, const SynergyGroup& group, const SynergyBox* pre_grasp,
-                                     const PrecisionSettings& settings, std::uint64_t seed, const Accept& accept = {});
+                                     const PrecisionSettings& settings, std::uint64_t seed, const Accept& accept = {},
+                                     const SearchProgress& progress = {});
 
 /// The same with everything made by the caller, for many searches of one object.
 SearchResult search_precision_grasps(const PrecisionSearch& search, std::uint64_t seed);

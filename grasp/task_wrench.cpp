@@ -51,7 +51,7 @@ LoadFactor load_factor(const WrenchSpace& space, const Vector6d& load, double re
   LoadFactor result;
   result.upper = std::numeric_limits<double>::infinity();
   result.converged = false;
-  while (points.cols() < kMaxRayPoints) {
+  while (points.cols() < space.wrenches().cols() + kMaxRayPoints) {
     const Ray ray = cast_ray(points, toward);
     if (!ray.converged) break;
     const Vector6d p = unit * space.support(ray.dual);

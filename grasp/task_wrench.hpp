@@ -14,7 +14,7 @@ struct LoadFactor {
   double upper = 0.0;                     ///< the true k is at most this
   Vector6d direction = Vector6d::Zero();  ///< u with h(u) = upper u'load: the plane that ends the ray; where factor is
                                           ///< 0 u separates the load from all that the contacts can supply
-  bool converged = true;  ///< false: upper - factor is more than was asked
+  bool converged = true;                  ///< false: upper - factor is more than was asked
 };
 
 /// The wrenches that the contacts can supply: WrenchSpace joined with the origin, since contacts may push less (the L1
