@@ -158,6 +158,9 @@ std::vector<Trial> run_batch(const Search& search, std::int64_t first, int count
 /// so the starts stay candidates). Between rounds `pause` may throw.
 std::vector<Grasp> refined(const Search& search, std::vector<Grasp> candidates, const std::function<void()>& pause) {
   const SearchSettings& settings = search.settings;
+  if (candidates.empty()) return {};
+  // No more than trials found: a start and what became of it count once.
+  const int count = std::min(settings.count, static_cast<int>(candidates.size()));
   if (settings.improvements > 0) {
     const std::vector<std::size_t> starts = distinct_grasps(candidates, 2 * settings.count, settings.distances);
     for (std::size_t first = 0; first < starts.size(); first += static_cast<std::size_t>(settings.threads)) {
@@ -172,7 +175,7 @@ std::vector<Grasp> refined(const Search& search, std::vector<Grasp> candidates, 
     }
   }
   std::vector<Grasp> best;
-  for (const std::size_t i : distinct_grasps(candidates, settings.count, settings.distances)) {
+  for (const std::size_t i : distinct_grasps(candidates, count, settings.distances)) {
     best.push_back(std::move(candidates[i]));
   }
   return best;

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Eigenvalues>
-
 #include "core/require.hpp"
 #include "robot/mesh.hpp"
 
@@ -22,15 +20,6 @@ constexpr double kObstacleGridMargin = 0.2;  // m, around the object: where hand
 constexpr double kObstacleHorizon = 0.06;    // m, farther ones need not be told exactly
 constexpr double kSurfaceSpacing = 0.0025;   // m
 constexpr double kSurfacePoints = 40000.0;
-
-/// Principal axes of the points' second moments about their mean, the longest last.
-Eigen::Matrix3d principal_axes(const std::vector<Eigen::Vector3d>& points) {
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& p : points) mean += p / static_cast<double>(points.size());
-  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
-  for (const Eigen::Vector3d& p : points) moments += (p - mean) * (p - mean).transpose();
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(moments).eigenvectors();
-}
 
 }  // namespace
 
@@ -73,7 +62,6 @@ GraspTarget make_target(const robot::Scene& scene, const std::string& object, in
   target.surface = PointTree(robot::surface_samples({target.mesh, Eigen::Isometry3d::Identity()}, spacing));
   target.center_of_mass = robot::is_closed(*target.mesh) ? robot::mass_properties(*target.mesh).center_of_mass
                                                          : Eigen::Vector3d(vertices.rowwise().mean());
-  target.axes = principal_axes(target.surface.points());
   target.rho = (vertices.colwise() - target.center_of_mass).colwise().norm().maxCoeff();
   for (const robot::SceneBody& other : scene.bodies) {
     if (other.name == object || other.geometry.empty()) continue;
@@ -102,15 +90,6 @@ SurfaceSeed sample_surface(const GraspTarget& target, Rng& rng) {
   const double b = root * (1.0 - share);
   const double c = root * share;
   return {a + b * u + c * v, u.cross(v).normalized()};
-}
-
-SurfaceSeed sample_axis(const GraspTarget& target, Rng& rng) {
-  const auto axis = static_cast<Eigen::Index>(rng.index(3));
-  const Eigen::Vector3d n = rng.uniform() < 0.5 ? target.axes.col(axis).eval() : (-target.axes.col(axis)).eval();
-  const Eigen::Vector3d along = target.axes.col(2);
-  Eigen::Vector3d middle = target.center_of_mass;
-  if (axis != 2) middle += along * along.dot(sample_surface(target, rng).p_O - middle);
-  return {target.distance->query(middle + (target.rho + 0.1) * n).point, n};
 }
 
 }  // namespace opponens::grasp

@@ -24,11 +24,15 @@ Eigen::Vector3d random_vector(Rng& rng) { return {rng.normal(), rng.normal(), rn
 std::vector<Facet> heap(Rng& rng, int bodies) {
   std::vector<Facet> all;
   for (int i = 0; i < bodies; ++i) {
-    robot::Geometry geometry{robot::Box{Eigen::Vector3d(rng.uniform(0.1, 0.8), rng.uniform(0.1, 0.8), 0.3)}};
+    // One draw after the other: the order of a call's arguments is the compiler's.
+    const double depth = rng.uniform(0.1, 0.8);
+    const double width = rng.uniform(0.1, 0.8);
+    robot::Geometry geometry{robot::Box{Eigen::Vector3d(width, depth, 0.3)}};
     if (i % 3 == 1) geometry.shape = robot::Cylinder{rng.uniform(0.05, 0.3), rng.uniform(0.2, 1.0)};
     if (i % 3 == 2) geometry.shape = robot::Sphere{rng.uniform(0.1, 0.4)};
-    geometry.X_BG = Eigen::Translation3d(0.5 * random_vector(rng)) *
-                    Eigen::AngleAxisd(rng.uniform(0, 3), random_vector(rng).normalized());
+    const Eigen::Vector3d place = 0.5 * random_vector(rng);
+    const Eigen::Vector3d axis = random_vector(rng).normalized();
+    geometry.X_BG = Eigen::Translation3d(place) * Eigen::AngleAxisd(rng.uniform(0, 3), axis);
     const auto part = facets(geometry, i, {10, 100});
     all.insert(all.end(), part.begin(), part.end());
   }
