@@ -124,8 +124,7 @@ grasp::SearchResult search(const Task& task, const SynergyGroup& group, const Sy
   const auto show = [&progress](std::int64_t done, std::int64_t total) { progress.update(done, total); };
   if (task.options.tips) {
     auto settings = precision_settings(task.options, task.settings.threads);
-    settings.convention = grasp::default_convention(task.search_world.target, settings.mu);
-    settings.convention->edges = task.settings.edges;
+    settings.convention = grasp::default_convention(task.search_world.target, settings.mu, task.settings.edges);
     return grasp::search_precision_grasps(task.search_world, group, &pre_grasp, settings, seed, accept, show);
   }
   grasp::SearchSettings settings = task.settings;
@@ -162,9 +161,8 @@ void import_file(const Task& task, const std::vector<SynergyGroup>& groups, Gras
   }
   std::vector<grasp::HandPose> postures;
   for (const auto& one : imported.postures) postures.push_back(one.posture);
-  auto checked = grasp::check_given(
-      {task.world.hand, task.world.scene, task.world.object, groups, task.synergies.value.pre_grasp.box, task.settings},
-      postures, [&task](Grasp& candidate) { return task.reach(candidate); });
+  auto checked = grasp::check_given({task.search_world, groups, task.synergies.value.pre_grasp.box, task.settings},
+                                    postures, [&task](Grasp& candidate) { return task.reach(candidate); });
   grasp::SearchResult found;
   found.trials = static_cast<std::int64_t>(postures.size());
   for (std::size_t i = 0; i < checked.size(); ++i) {
@@ -186,14 +184,15 @@ void import_file(const Task& task, const std::vector<SynergyGroup>& groups, Gras
   if (found.grasps.empty()) say_none(task, "imported", found);
 }
 
-int finish(const Task& task, const GraspTally& tally, const RunLog& log, const std::vector<std::string>& warnings) {
+int finish(const GraspOptions& options, const Console& console, const NamedWorld& world, const GraspTally& tally,
+           const RunLog& log, const std::vector<std::string>& warnings) {
   log.finish(tally.ids);
-  const auto causes = causes_of(tally.rejected, task.world.scene, task.world.object);
+  const auto causes = causes_of(tally.rejected, world.scene, world.object);
   Json answer = nullptr;
   if (tally.ids.empty())
     answer = tally.answer.empty() ? std::string("no grasp: ").append(shares(causes, tally.trials)) : tally.answer;
   Json result = document("grasp");
-  result.update({{"object", task.world.object},
+  result.update({{"object", world.object},
                  {"grasps", tally.grasps},
                  {"groups", tally.groups},
                  {"trials", tally.trials},
@@ -203,8 +202,8 @@ int finish(const Task& task, const GraspTally& tally, const RunLog& log, const s
                  {"answer", answer},
                  {"causes", causes_json(causes, tally.trials)},
                  {"warnings", warnings}});
-  if (!task.options.import.empty()) result["refused"] = tally.refused;
-  task.console.document(result.dump());
+  if (!options.import.empty()) result["refused"] = tally.refused;
+  console.document(result.dump());
   return tally.ids.empty() ? kNoAnswer : kDone;
 }
 
@@ -222,14 +221,14 @@ int grasp(const GraspOptions& options, const Console& console) {
   const Reach reach(world, options.max_penetration);
   const auto warnings = warnings_of(world, reach.checker());
   for (const auto& warning : warnings) console.advise(warning);
-  const grasp::SearchWorld search_world = grasp::make_search_world(world.hand, world.scene, world.object, threads);
-  const Task task{options, console, world, synergies, reach, search_settings(options, threads), search_world, store};
   GraspTally tally;
   if (const auto far = out_of_reach(world)) {
     console.say(*far);
     tally.answer = *far;
-    return finish(task, tally, log, warnings);
+    return finish(options, console, world, tally, log, warnings);
   }
+  const grasp::SearchWorld search_world = grasp::make_search_world(world.hand, world.scene, world.object, threads);
+  const Task task{options, console, world, synergies, reach, search_settings(options, threads), search_world, store};
   if (!options.import.empty()) {
     import_file(task, groups, tally);
   } else if (options.free_joints) {
@@ -239,7 +238,7 @@ int grasp(const GraspOptions& options, const Console& console) {
   } else {
     for (const auto& group : groups) search_group(task, group, synergies.value.pre_grasp.box, groups, tally);
   }
-  return finish(task, tally, log, warnings);
+  return finish(options, console, world, tally, log, warnings);
 }
 
 }  // namespace opponens::cli

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numeric>
 #include <string>
+#include <utility>
 
 #include "core/require.hpp"
 
@@ -32,15 +33,17 @@ bool same_grasp(const Grasp& a, const Grasp& b, const GraspDistances& distances)
   return a.q_grasp.size() == 0 || (a.q_grasp - b.q_grasp).cwiseAbs().maxCoeff() < distances.joints;
 }
 
-std::vector<std::size_t> distinct_grasps(const std::vector<Grasp>& grasps, int count, const GraspDistances& distances) {
+std::optional<double> worth_by_epsilon(const Grasp& grasp) { return grasp.quality.epsilon; }
+
+std::vector<std::size_t> distinct_grasps(const std::vector<Grasp>& grasps, int count, const GraspDistances& distances,
+                                         const GraspWorth& worth) {
   validate(distances);
   require(count >= 0, "distinct_grasps: count must not be negative");
   std::vector<std::size_t> order(grasps.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  const auto epsilon = [&](std::size_t i) {
-    return grasps[i].quality.epsilon.value_or(-std::numeric_limits<double>::infinity());
-  };
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return epsilon(a) > epsilon(b); });
+  std::vector<double> value;
+  for (const Grasp& grasp : grasps) value.push_back(worth(grasp).value_or(-std::numeric_limits<double>::infinity()));
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return value[a] > value[b]; });
   std::vector<std::size_t> taken;
   for (const std::size_t i : order) {
     if (taken.size() == static_cast<std::size_t>(count)) break;
@@ -50,6 +53,13 @@ std::vector<std::size_t> distinct_grasps(const std::vector<Grasp>& grasps, int c
     if (!repeats) taken.push_back(i);
   }
   return taken;
+}
+
+std::vector<Grasp> best_distinct(std::vector<Grasp> grasps, int count, const GraspDistances& distances,
+                                 const GraspWorth& worth) {
+  std::vector<Grasp> best;
+  for (const std::size_t i : distinct_grasps(grasps, count, distances, worth)) best.push_back(std::move(grasps[i]));
+  return best;
 }
 
 }  // namespace opponens::grasp

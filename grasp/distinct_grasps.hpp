@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include "core/grasp.hpp"
@@ -20,8 +22,16 @@ void validate(const GraspDistances& distances);  ///< throws std::invalid_argume
 /// Whether a and b count as one. Both of the same hand, else std::invalid_argument.
 bool same_grasp(const Grasp& a, const Grasp& b, const GraspDistances& distances);
 
-/// Indices of at most count grasps, best first: greedily by epsilon, each different from all that were taken before it.
-/// Of equally good ones the earlier comes first; those without an epsilon come last. Cost: O(G log G + G count).
-std::vector<std::size_t> distinct_grasps(const std::vector<Grasp>& grasps, int count, const GraspDistances& distances);
+/// What a grasp is worth; nothing where it has no such value.
+using GraspWorth = std::function<std::optional<double>(const Grasp&)>;
+std::optional<double> worth_by_epsilon(const Grasp& grasp);
+
+/// Indices of at most count grasps, best first: greedily by their worth, each different from all that were taken before
+/// it. Of equally good ones the earlier comes first; those without a worth come last. Cost: O(G log G + G count).
+std::vector<std::size_t> distinct_grasps(const std::vector<Grasp>& grasps, int count, const GraspDistances& distances,
+                                         const GraspWorth& worth = worth_by_epsilon);
+/// Those grasps.
+std::vector<Grasp> best_distinct(std::vector<Grasp> grasps, int count, const GraspDistances& distances,
+                                 const GraspWorth& worth = worth_by_epsilon);
 
 }  // namespace opponens::grasp

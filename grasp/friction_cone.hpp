@@ -11,7 +11,8 @@ namespace opponens::grasp {
 
 /// The wrenches of one contact under the exact friction cone, w(e) = (c + mu (e_x x + e_y y + e_z z)) / s over the
 /// edges e_x^2 + e_y^2 <= 1 (point with friction), e_x^2 + e_y^2 + (e_z / torsion_radius)^2 <= 1 (soft finger), e = 0
-/// (frictionless); s = 1 or, under the unit force, the length of the contact's force.
+/// (frictionless); s = 1 or, under the unit force, the length of the contact's force (a point contact with friction
+/// then has the rim e_x^2 + e_y^2 = 1 alone, as pyramids have).
 struct QuadraticContact {
   QuadraticContact(const Contact& contact, const QualityConvention& convention);
 

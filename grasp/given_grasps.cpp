@@ -30,43 +30,26 @@ std::string beyond_limits(const robot::RobotModel& hand, const Eigen::VectorXd& 
   return {};
 }
 
-/// What all postures share, made once.
-struct Checks {
-  const GivenWorld& world;
-  GraspTarget target;
-  HandSurface surface;
-  HandCheckers checkers;
-};
-
-QualityConvention given_convention(const Checks& checks) {
-  QualityConvention convention;
-  convention.mu = checks.world.settings.mu;
-  convention.edges = checks.world.settings.edges;
-  convention.rho = checks.target.rho;
-  convention.origin = checks.target.center_of_mass;
-  return convention;
-}
-
-GivenGrasp check_one(const Checks& checks, const HandPose& given, const Accept& accept) {
-  const GivenWorld& world = checks.world;
+GivenGrasp check_one(const GivenWorld& world, const HandPose& given, const Accept& accept) {
   const SearchSettings& settings = world.settings;
-  if (std::string reason = beyond_limits(world.hand, given.q); !reason.empty()) return {std::nullopt, reason};
-  const HandPose posture{given.X_OH, world.hand.clip(given.q)};
+  const auto& [hand, target, surface, checkers] = world.search;
+  if (std::string reason = beyond_limits(hand, given.q); !reason.empty()) return {std::nullopt, reason};
+  const HandPose posture{given.X_OH, hand.clip(given.q)};
   const SynergyGroup& group = world.groups[nearest_group(world.groups, posture.q)];
   const Eigen::VectorXd direction = closing_direction(group.box, world.pre_grasp);
-  const ClosingScene scene{world.hand, checks.surface, checks.target, group.box, direction};
+  const ClosingScene scene{hand, surface, target, group.box, direction};
   Grasp grasp;
   grasp.contacts = find_contacts(scene, posture, settings.contact_tolerance, settings.mu);
   if (grasp.contacts.size() < 3) return {std::nullopt, "fewer than three contacts"};
-  grasp.quality = evaluate(grasp.contacts, given_convention(checks));
+  grasp.quality = evaluate(grasp.contacts, default_convention(target, settings.mu, settings.edges));
   if (!grasp.quality.force_closure()) return {std::nullopt, "not force closure"};
   if (!grasp.quality.epsilon) return {std::nullopt, "epsilon did not converge"};
   const GraspLimits limits =
-      grasp_limits(world.hand, links_of(grasp.contacts), settings.max_penetration, settings.clearance_pregrasp);
-  if (std::string fault = posture_fault(scene, checks.checkers, posture, limits); !fault.empty()) {
+      grasp_limits(hand, links_of(grasp.contacts), settings.max_penetration, settings.clearance_pregrasp);
+  if (std::string fault = posture_fault(scene, checkers, posture, limits); !fault.empty()) {
     return {std::nullopt, fault};
   }
-  const auto pregrasp = find_pregrasp(scene, checks.checkers, world.pre_grasp, posture, limits);
+  const auto pregrasp = find_pregrasp(scene, checkers, world.pre_grasp, posture, limits);
   if (!pregrasp) return {std::nullopt, "no clear pre-grasp"};
   grasp.q_grasp = posture.q;
   grasp.X_OH = posture.X_OH;
@@ -108,16 +91,13 @@ std::vector<GivenGrasp> check_given(const GivenWorld& world, const std::vector<H
                                     const Accept& accept) {
   validate(world.settings);
   for (const HandPose& posture : postures) {
-    require(posture.q.size() == world.hand.dof() && posture.q.allFinite() && posture.X_OH.matrix().allFinite(),
+    require(posture.q.size() == world.search.hand.dof() && posture.q.allFinite() && posture.X_OH.matrix().allFinite(),
             "check_given: a posture is not finite, or not of this hand's joints");
   }
   require(!world.groups.empty(), "check_given: there are no groups");
-  const Eigen::VectorXd middle = 0.5 * (world.hand.lower() + world.hand.upper());  // as the search
-  const Checks checks{world, make_target(world.scene, world.object, world.settings.threads),
-                      hand_surface(world.hand, middle), hand_checkers(world.hand, world.scene, world.object)};
   std::vector<GivenGrasp> results;
   results.reserve(postures.size());
-  for (const HandPose& posture : postures) results.push_back(check_one(checks, posture, accept));
+  for (const HandPose& posture : postures) results.push_back(check_one(world, posture, accept));
   return results;
 }
 

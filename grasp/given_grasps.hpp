@@ -11,8 +11,6 @@
 #include "core/synergies.hpp"
 #include "grasp/close_hand.hpp"
 #include "grasp/grasp_search.hpp"
-#include "robot/robot_model.hpp"
-#include "robot/scene.hpp"
 
 namespace opponens::grasp {
 
@@ -25,9 +23,7 @@ std::size_t nearest_group(const std::vector<SynergyGroup>& groups, const Eigen::
 
 /// What given grasps are held to: refers to the caller's values.
 struct GivenWorld {
-  const robot::RobotModel& hand;  ///< rooted at the palm (load_hand)
-  const robot::Scene& scene;
-  const std::string& object;
+  const SearchWorld& search;
   const std::vector<SynergyGroup>& groups;  ///< of which each grasp gets the nearest
   const SynergyBox& pre_grasp;
   const SearchSettings& settings;

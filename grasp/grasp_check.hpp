@@ -54,8 +54,8 @@ std::string posture_fault(const ClosingScene& scene, const HandCheckers& checker
 
 /// Pre-grasp of a closed hand: fingers opened towards the pre-grasp box and hand drawn back along its approach
 /// direction, by the least of a fixed ladder of amounts for which the hand keeps its clearance from the object,
-/// collides with nothing, and can move straight (in palm position and joints) to the grasp with what posture_fault
-/// asks.
+/// collides with nothing, and can move straight (in palm position and joints) to the grasp: at twelve samples the
+/// hand's points keep what posture_fault asks of them, at every third the collision truth is asked too.
 std::optional<HandPose> find_pregrasp(const ClosingScene& scene, const HandCheckers& checkers,
                                       const SynergyBox& pre_grasp, const HandPose& grasp, const GraspLimits& limits);
 

@@ -45,15 +45,6 @@ struct Search {
   Eigen::VectorXd direction;
 };
 
-QualityConvention convention_of(const Search& search) {
-  QualityConvention convention;
-  convention.mu = search.settings.mu;
-  convention.edges = search.settings.edges;
-  convention.rho = search.world.target.rho;
-  convention.origin = search.world.target.center_of_mass;
-  return convention;
-}
-
 Grasp describe(const Search& search, const HandPose& closed, const HandPose& pregrasp, std::vector<Contact> contacts,
                GraspQuality quality) {
   Grasp grasp;
@@ -79,7 +70,7 @@ Trial attempt(const Search& search, const HandPose& start, double incumbent) {
   if (contacts.size() < 3) return rejected("fewer than three contacts");
   QualityRequest request;
   if (incumbent > 0.0) request.at_least = incumbent;
-  GraspQuality quality = evaluate(contacts, convention_of(search), request);
+  GraspQuality quality = evaluate(contacts, default_convention(world.target, settings.mu, settings.edges), request);
   if (quality.state == ClosureState::below_incumbent) return rejected("no better");
   if (!quality.force_closure()) return rejected("not force closure");
   if (!quality.epsilon) return rejected("epsilon did not converge");  // grasps are ranked by it
@@ -174,11 +165,7 @@ std::vector<Grasp> refined(const Search& search, std::vector<Grasp> candidates, 
       pause();
     }
   }
-  std::vector<Grasp> best;
-  for (const std::size_t i : distinct_grasps(candidates, count, settings.distances)) {
-    best.push_back(std::move(candidates[i]));
-  }
-  return best;
+  return best_distinct(std::move(candidates), count, settings.distances);
 }
 
 void check_shapes(const robot::RobotModel& hand, const SynergyGroup& group, const SynergyBox& pre_grasp) {

@@ -76,6 +76,15 @@ GraspTarget make_target(const robot::Scene& scene, const std::string& object, in
   return target;
 }
 
+QualityConvention default_convention(const GraspTarget& target, double mu, int edges) {
+  QualityConvention convention;
+  convention.mu = mu;
+  convention.edges = edges;
+  convention.rho = target.rho;
+  convention.origin = target.center_of_mass;
+  return convention;
+}
+
 SurfaceSeed sample_surface(const GraspTarget& target, Rng& rng) {
   const Eigen::VectorXd& areas = target.cumulative_area;
   const double pick = rng.uniform() * areas[areas.size() - 1];

@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "core/grasp.hpp"
 #include "core/rng.hpp"
 #include "grasp/body_distance.hpp"
 #include "grasp/distance_grid.hpp"
@@ -44,6 +45,10 @@ struct GraspTarget {
 };
 
 GraspTarget make_target(const robot::Scene& scene, const std::string& object, int threads);
+
+/// How the searches score grasps: point contact with friction, normal force 1, L1, torque divided by the object's
+/// radius, about its centre of mass.
+QualityConvention default_convention(const GraspTarget& target, double mu, int edges = 8);
 
 struct SurfaceSeed {
   Eigen::Vector3d p_O;

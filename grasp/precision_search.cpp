@@ -46,33 +46,7 @@ std::vector<PrecisionTrial> run_trials(const PrecisionSearch& search, std::uint6
   return trials;
 }
 
-double worth(const Grasp& grasp, PrecisionGoal goal) {
-  return (goal == PrecisionGoal::min_weight ? grasp.quality.min_weight : grasp.quality.epsilon).value_or(0.0);
-}
-
-/// Best first, each different from the better ones, at most settings.count.
-std::vector<Grasp> best_of(std::vector<Grasp> found, const PrecisionSettings& settings) {
-  std::stable_sort(found.begin(), found.end(),
-                   [&](const Grasp& a, const Grasp& b) { return worth(a, settings.goal) > worth(b, settings.goal); });
-  std::vector<Grasp> kept;
-  for (Grasp& grasp : found) {
-    if (kept.size() == static_cast<std::size_t>(settings.count)) break;
-    const bool repeats = std::any_of(
-        kept.begin(), kept.end(), [&](const Grasp& better) { return same_grasp(better, grasp, settings.distances); });
-    if (!repeats) kept.push_back(std::move(grasp));
-  }
-  return kept;
-}
-
 }  // namespace
-
-QualityConvention default_convention(const GraspTarget& target, double mu) {
-  QualityConvention convention;
-  convention.mu = mu;
-  convention.rho = target.rho;
-  convention.origin = target.center_of_mass;
-  return convention;
-}
 
 void validate(const PrecisionSettings& s) {
   const auto check = [](bool holds, const char* field, double value, const char* constraint) {
@@ -165,7 +139,9 @@ SearchResult search_precision_grasps(const PrecisionSearch& search, std::uint64_
     if (search.progress) search.progress(result.trials, settings.max_trials);
   }
   const std::size_t accepted = found.size();
-  result.grasps = best_of(std::move(found), settings);
+  result.grasps = best_distinct(std::move(found), settings.count, settings.distances, [&](const Grasp& grasp) {
+    return settings.goal == PrecisionGoal::min_weight ? grasp.quality.min_weight : grasp.quality.epsilon;
+  });
   if (accepted > result.grasps.size()) {
     result.rejected["a better one was kept"] = static_cast<std::int64_t>(accepted - result.grasps.size());
   }

@@ -76,8 +76,4 @@ SearchResult search_precision_grasps(const SearchWorld& world, const SynergyGrou
 /// The same with everything made by the caller, for many searches of one object.
 SearchResult search_precision_grasps(const PrecisionSearch& search, std::uint64_t seed);
 
-/// Point contact with friction mu, 8 edges, normal force 1, torque divided by the object's radius, about its centre of
-/// mass.
-QualityConvention default_convention(const GraspTarget& target, double mu);
-
 }  // namespace opponens::grasp

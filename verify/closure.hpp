@@ -13,9 +13,10 @@
 namespace opponens::verify {
 
 /// Edges of a contact's friction cone [6 x edges] = [force; torque about the contact], made here from the convention's
-/// definition: forces n + mu (cos t_x + sin t_y); without friction n alone; for a soft finger 20 edges on the ellipsoid
-/// |f_t|^2 + (torque/r)^2 = mu^2 with r the torsion radius. Each is checked to lie in the cone
-/// (1 + mu^2) (f.n)^2 >= |f|^2 + (torque/r)^2 (to 1e-12), and scaled to a force of length 1 where that is the unit.
+/// definition: forces n + mu (cos t_x + sin t_y); without friction n alone; for a soft finger 20 edges (of quadratic
+/// cones many more) on the ellipsoid |f_t|^2 + (torque/r)^2 = mu^2 with r the torsion radius. Each is checked to lie in
+/// the cone (1 + mu^2) (f.n)^2 >= |f|^2 + (torque/r)^2 (to 1e-12), and scaled to a force of length 1 where that is the
+/// unit.
 Eigen::Matrix<double, 6, Eigen::Dynamic> contact_edges(const Contact& contact, const QualityConvention& convention);
 
 /// Wrenches [6 x N] = [force; torque / rho] of the edges of all contacts, torque about the convention's origin.

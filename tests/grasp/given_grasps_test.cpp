@@ -44,8 +44,8 @@ std::vector<GivenGrasp> check(const std::vector<HandPose>& postures, const Searc
                               const Accept& accept = {}) {
   const std::vector<SynergyGroup> groups = two_groups();
   const SynergyBox pre_grasp = test::power_synergies().pre_grasp;
-  const std::string object = "object";
-  return check_given({test::allegro(), ball(), object, groups, pre_grasp, settings}, postures, accept);
+  static const SearchWorld world = make_search_world(test::allegro(), ball(), "object", 2);
+  return check_given({world, groups, pre_grasp, settings}, postures, accept);
 }
 
 TEST(GivenGrasps, WhatTheSearchFoundComesOutTheSame) {
