@@ -20,7 +20,10 @@ Eigen::VectorXd solve_passive(const Eigen::MatrixXd& A, const Eigen::VectorXd& b
     if (passive[j]) columns.push_back(static_cast<Eigen::Index>(j));
   }
   Eigen::VectorXd z = Eigen::VectorXd::Zero(A.cols());
-  const Eigen::VectorXd s = A(Eigen::all, columns).colPivHouseholderQr().solve(b);
+  const Eigen::MatrixXd kept = A(Eigen::all, columns);
+  const auto qr = kept.colPivHouseholderQr();
+  Eigen::VectorXd s = qr.solve(b);
+  s += qr.solve(b - kept * s);
   for (std::size_t i = 0; i < columns.size(); ++i) z[columns[i]] = s[static_cast<Eigen::Index>(i)];
   return z;
 }
@@ -53,14 +56,18 @@ Eigen::VectorXd feasible_solution(const Eigen::MatrixXd& A, const Eigen::VectorX
 NonnegativeSolution nonnegative_least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
   require(A.rows() == b.size() && A.cols() > 0 && A.allFinite() && b.allFinite(),
           "nonnegative_least_squares: A and b must fit and be finite");
-  const double tolerance = 1e-12 * std::max(A.norm() * b.norm(), std::numeric_limits<double>::min());
+  // No tolerance tells a small gradient from none: a column that is nearly a passive one, as of contacts side by side,
+  // has a small gradient however large the residual is. Whether its entering gains anything is tried out.
+  const double done = 1e-15 * b.norm();
   NonnegativeSolution solution{Eigen::VectorXd::Zero(A.cols()), b.norm(), false};
   std::vector<bool> passive(static_cast<std::size_t>(A.cols()), false);
+  std::vector<bool> useless = passive;  // columns whose entering gained nothing since the last gain
   for (Eigen::Index step = 0; step < 10 * A.cols(); ++step) {
     const Eigen::VectorXd gradient = A.transpose() * (b - A * solution.x);
     Eigen::Index enter = -1;
-    for (Eigen::Index j = 0; j < A.cols(); ++j) {
-      if (passive[static_cast<std::size_t>(j)] || gradient[j] <= tolerance) continue;
+    for (Eigen::Index j = 0; j < A.cols() && solution.residual > done; ++j) {
+      const auto i = static_cast<std::size_t>(j);
+      if (passive[i] || useless[i] || gradient[j] <= 0.0) continue;
       if (enter < 0 || gradient[j] > gradient[enter]) enter = j;
     }
     if (enter < 0) {
@@ -71,10 +78,11 @@ NonnegativeSolution nonnegative_least_squares(const Eigen::MatrixXd& A, const Ei
     wider[static_cast<std::size_t>(enter)] = true;
     const Eigen::VectorXd x = feasible_solution(A, b, solution.x, wider);
     const double residual = (A * x - b).norm();
-    if (residual >= solution.residual) {  // rounding: nothing is gained any more
-      solution.converged = true;
-      break;
+    if (residual >= solution.residual) {  // rounding
+      useless[static_cast<std::size_t>(enter)] = true;
+      continue;
     }
+    std::fill(useless.begin(), useless.end(), false);
     solution.x = x;
     solution.residual = residual;
     passive = wider;

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <vector>
 
 #include <Eigen/QR>
@@ -60,6 +61,31 @@ TEST(NonnegativeLeastSquares, IsTheBestOfAllActiveSets) {
     if ((solution.x.array() == 0.0).any()) ++at_bound;
   }
   EXPECT_GT(at_bound, 100);
+}
+
+// Groups of nearly equal columns, as contacts side by side make them: a solution exists, and each step towards it has a
+// gradient as small as the columns' difference.
+TEST(NonnegativeLeastSquares, FindsTheSolutionAmongNearlyEqualColumns) {
+  Rng rng = stream(2, "test/nnls");
+  for (int trial = 0; trial < 300; ++trial) {
+    const double apart = std::pow(10.0, -rng.uniform(1.0, 6.0));
+    Eigen::MatrixXd A(6, 48);
+    for (Eigen::Index j = 0; j < A.cols(); ++j) {
+      for (double& value : A.col(j)) value = rng.normal();
+      if (j % 8 != 0) A.col(j) = A.col(j - j % 8) + apart * A.col(j);
+    }
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(A.cols());
+    for (int i = 0; i < 12; ++i) x[static_cast<Eigen::Index>(rng.index(48))] += rng.uniform();
+    const Eigen::VectorXd b = A * x;
+    const auto solution = nonnegative_least_squares(A, b);
+    ASSERT_TRUE(solution.converged) << "trial " << trial;
+    ASSERT_LE(solution.residual, 1e-11 * b.norm()) << "trial " << trial << ", " << apart << " apart";
+    // A companion that has none: along the last axis all columns point up, b down.
+    A.row(5) = A.row(5).cwiseAbs();
+    Eigen::VectorXd below = A * x;
+    below[5] = -1.0;
+    ASSERT_GE(nonnegative_least_squares(A, below).residual, 1.0 - 1e-12);
+  }
 }
 
 }  // namespace
