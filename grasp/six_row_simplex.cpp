@@ -16,6 +16,9 @@ constexpr int kRefactor = 24;           // pivots between two fresh inverses of 
 constexpr double kReducedCost = 1e-11;  // a column enters when it gains more than this
 constexpr double kPivot = 1e-11;        // least pivot element, relative to the entering column
 constexpr double kZero = 1e-13;         // basic values below this are degenerate
+constexpr double kNegative = 1e-12;     // basic values below minus this are not feasible
+constexpr int kMends = 50;              // dual pivots in a row
+constexpr int kMaxMends = 4;            // times that a mended basis may need primal pivots again
 constexpr int kPatience = 6;            // degenerate pivots in a row before Bland's rule
 
 }  // namespace
@@ -35,7 +38,14 @@ std::optional<bool> SixRowSimplex::feasible() {
   return left <= 1e-9;
 }
 
-bool SixRowSimplex::optimize() { return minimize(1.0, 0.0); }
+bool SixRowSimplex::optimize() {
+  for (int round = 0; round < kMaxMends; ++round) {
+    if (!minimize(1.0, 0.0)) return false;
+    if (infeasible_row() < 0) return true;
+    if (!mend()) return false;
+  }
+  return false;
+}
 
 Vector6d SixRowSimplex::column(int j) const {
   return j >= 0 ? Vector6d(a_.col(j)) : Vector6d(sign_[-1 - j] * Vector6d::Unit(-1 - j));
@@ -46,6 +56,7 @@ void SixRowSimplex::refactor() {
   for (int row = 0; row < 6; ++row) b.col(row) = column(basis_[row]);
   inverse_ = b.partialPivLu().inverse();
   value_ = inverse_ * c_;
+  value_ += inverse_ * (c_ - b * value_);  // one step of refinement: ill-conditioned bases lose digits
   since_refactor_ = 0;
 }
 
@@ -101,16 +112,64 @@ bool SixRowSimplex::minimize(double cost, double artificial_cost) {
     if (leave < 0) return false;  // both objectives are bounded below: only rounding leads here
     const double step = value_[leave] / direction[leave];
     degenerate = step <= kZero ? degenerate + 1 : 0;
-    basis_[leave] = enter;
-    if (++since_refactor_ >= kRefactor) {
-      refactor();
-      continue;
-    }
-    const Eigen::Matrix<double, 1, 6> pivot_row = inverse_.row(leave) / direction[leave];
-    inverse_ -= direction * pivot_row;
-    inverse_.row(leave) = pivot_row;
-    value_ -= step * direction;
-    value_[leave] = step;
+    pivot(leave, enter, direction);
+  }
+  return false;
+}
+
+/// The column `enter` takes the place of the basis's row `leave`; direction: the column in terms of the basis.
+void SixRowSimplex::pivot(int leave, int enter, const Vector6d& direction) {
+  const double step = value_[leave] / direction[leave];
+  basis_[leave] = enter;
+  if (++since_refactor_ >= kRefactor) return refactor();
+  const Eigen::Matrix<double, 1, 6> pivot_row = inverse_.row(leave) / direction[leave];
+  inverse_ -= direction * pivot_row;
+  inverse_.row(leave) = pivot_row;
+  value_ -= step * direction;
+  value_[leave] = step;
+}
+
+/// The row that is least feasible: negative, or a spent artificial that is not zero; -1: none is.
+int SixRowSimplex::infeasible_row() const {
+  int worst = -1;
+  double excess = kNegative;
+  for (int row = 0; row < 6; ++row) {
+    const double here = basis_[row] < 0 ? std::abs(value_[row]) : -value_[row];
+    if (here <= excess) continue;
+    worst = row;
+    excess = here;
+  }
+  return worst;
+}
+
+/// Column that makes this row feasible and keeps the dual so (least ratio of the dual simplex method); -1: none does.
+int SixRowSimplex::entering_for(int row) const {
+  const double sign = value_[row] < 0.0 ? -1.0 : 1.0;
+  const Eigen::VectorXd alpha = sign * (inverse_.row(row) * a_).transpose();
+  const double least = 1e-9 * alpha.cwiseAbs().maxCoeff();
+  int best = -1;
+  double best_ratio = std::numeric_limits<double>::infinity();
+  for (Eigen::Index j = 0; j < a_.cols(); ++j) {
+    if (alpha[j] <= least || std::find(basis_.begin(), basis_.end(), j) != basis_.end()) continue;
+    const double ratio = std::max(1.0 - dual_.dot(a_.col(j)), 0.0) / alpha[j];
+    if (ratio >= best_ratio) continue;
+    best = static_cast<int>(j);
+    best_ratio = ratio;
+  }
+  return best;
+}
+
+/// Pivots of the dual simplex method from an optimal basis until its values are feasible.
+bool SixRowSimplex::mend() {
+  for (int pivots = 0; pivots < kMends; ++pivots) {
+    const int leave = infeasible_row();
+    if (leave < 0) return true;
+    const int enter = entering_for(leave);
+    if (enter < 0) return false;
+    pivot(leave, enter, inverse_ * a_.col(enter));
+    Vector6d basic_cost;
+    for (int row = 0; row < 6; ++row) basic_cost[row] = basis_[row] < 0 ? 0.0 : 1.0;
+    dual_ = inverse_.transpose() * basic_cost;
   }
   return false;
 }

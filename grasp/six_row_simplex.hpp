@@ -10,8 +10,9 @@
 namespace opponens::grasp {
 
 /// min 1'b subject to A b = c, b >= 0 with A [6 x N]: the revised simplex method with the inverse of the 6 x 6 basis
-/// (largest coefficient; Bland's rule while degenerate). Cost: O(6 N) per pivot, about 15 pivots. A and c are best of
-/// unit scale and must outlive this.
+/// (largest coefficient; Bland's rule while degenerate). Rounding of ill-conditioned bases can leave a basic value
+/// negative: a few pivots of the dual simplex method mend that at the optimum. Cost: O(6 N) per pivot, about 15 pivots.
+/// A and c are best of unit scale and must outlive this.
 class SixRowSimplex {
  public:
   SixRowSimplex(const Matrix6Xd& a, const Vector6d& c);
@@ -32,6 +33,10 @@ class SixRowSimplex {
   int entering(double cost, bool bland) const;
   int leaving(const Vector6d& direction, bool phase_two) const;
   bool minimize(double cost, double artificial_cost);
+  int infeasible_row() const;
+  int entering_for(int row) const;
+  bool mend();
+  void pivot(int leave, int enter, const Vector6d& direction);
 
   const Matrix6Xd& a_;
   const Vector6d& c_;

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/rng.hpp"
 #include "grasp/origin_ball.hpp"
 #include "grasp/quality.hpp"
@@ -58,6 +60,22 @@ TEST(MinWeight, PrimalAndDualCertifyEachOther) {
   }
   EXPECT_GT(positive, 300);
   EXPECT_LT(positive, 1700);
+}
+
+TEST(MinWeight, IsAttainedOnIllConditionedSets) {
+  Rng rng = stream(23, "clusters");
+  for (int i = 0; i < 4000; ++i) {
+    const double apart = std::pow(10.0, -rng.uniform(1.0, 6.0));
+    const Matrix6Xd w = contact_wrenches(test::clustered_contacts(3 + static_cast<int>(rng.index(4)), apart, rng), {});
+    const MinWeight solution = min_weight(w);
+    ASSERT_EQ(solution.state, MinWeight::State::optimal) << "set " << i;
+    const double size = 1.0 + solution.weights.cwiseAbs().maxCoeff();
+    ASSERT_NEAR((w * solution.weights).norm(), 0.0, 1e-11 * size) << "set " << i << ", " << apart << " apart";
+    ASSERT_NEAR(solution.weights.sum(), 1.0, 1e-11 * size);
+    ASSERT_GE(solution.weights.minCoeff(), solution.value - 1e-15);
+    const double z = 1.0 / static_cast<double>(w.cols()) - w.rowwise().mean().dot(solution.dual);
+    ASSERT_GE((solution.dual.transpose() * w).minCoeff() + z, -1e-9 * size) << "set " << i << ", " << apart << " apart";
+  }
 }
 
 TEST(MinWeight, SignAgreesWithEpsilonOnTenThousandMixedSets) {
