@@ -99,7 +99,7 @@ void ClearanceProbe::measure(Clearance& least) {
   for (std::size_t i = 0; i < count; ++i) {
     const Near& point = near_[i];
     if (point.rough > least.object + scene_.target.grid->spacing()) break;  // once this far off, the rest cannot win
-    const double exact = scene_.target.distance->signed_distance(point.p_O);
+    const double exact = scene_.target.nearest(point.p_O).distance;
     if (exact >= least.object) continue;
     least.object = exact;
     least.link = point.link;

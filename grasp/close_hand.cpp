@@ -248,7 +248,7 @@ std::vector<Contact> find_contacts(const ClosingScene& scene, const HandPose& po
     const auto link = static_cast<std::size_t>(point.link);
     const Eigen::Vector3d p_O = pose.X_OH * X_HL[link] * point.p_L;
     if (scene.target.grid->value(p_O) > tolerance + scene.target.grid->spacing()) continue;
-    const auto at = scene.target.distance->query(p_O);
+    const auto at = scene.target.nearest(p_O);
     if (std::abs(at.distance) <= tolerance) add(link, at);
   }
   const DistanceGrid& grid = *scene.target.grid;
@@ -261,7 +261,7 @@ std::vector<Contact> find_contacts(const ClosingScene& scene, const HandPose& po
         nearest.distance,
         [&](const Eigen::Vector3d&, const Eigen::Vector3d& p_O) {
           if (grid.bound(p_O) - grid.error() >= nearest.distance) return nearest.distance;
-          const auto at = scene.target.distance->query(p_O);
+          const auto at = scene.target.nearest(p_O);
           if (at.distance < nearest.distance) nearest = at;
           return nearest.distance;
         });

@@ -96,7 +96,7 @@ std::vector<double> link_object_distances(const ClosingScene& scene, const HandP
                                                  // Only a point that could still be the nearest is worth an exact
                                                  // answer.
                                                  if (bound(p_O) < least) {
-                                                   least = std::min(least, scene.target.distance->signed_distance(p_O));
+                                                   least = std::min(least, scene.target.nearest(p_O).distance);
                                                  }
                                                  return least;
                                                });

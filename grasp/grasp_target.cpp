@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include <Eigen/Eigenvalues>
+
 #include "core/require.hpp"
 #include "robot/mesh.hpp"
 
@@ -21,7 +23,20 @@ constexpr double kObstacleHorizon = 0.06;    // m, farther ones need not be told
 constexpr double kSurfaceSpacing = 0.0025;   // m
 constexpr double kSurfacePoints = 40000.0;
 
+/// Principal axes of the points' second moments about their mean, the longest last.
+Eigen::Matrix3d principal_axes(const std::vector<Eigen::Vector3d>& points) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& p : points) mean += p / static_cast<double>(points.size());
+  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
+  for (const Eigen::Vector3d& p : points) moments += (p - mean) * (p - mean).transpose();
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(moments).eigenvectors();
+}
+
 }  // namespace
+
+robot::MeshDistance::Query GraspTarget::nearest(const Eigen::Vector3d& p_O) const {
+  return distance->query(p_O, std::abs(grid->value(p_O)) + grid->error());
+}
 
 SignedDistance GraspTarget::obstacle_distance(const Eigen::Vector3d& p_O, double horizon) const {
   if (obstacle_grid && obstacle_grid->holds(p_O)) {
@@ -62,6 +77,7 @@ GraspTarget make_target(const robot::Scene& scene, const std::string& object, in
   target.surface = PointTree(robot::surface_samples({target.mesh, Eigen::Isometry3d::Identity()}, spacing));
   target.center_of_mass = robot::is_closed(*target.mesh) ? robot::mass_properties(*target.mesh).center_of_mass
                                                          : Eigen::Vector3d(vertices.rowwise().mean());
+  target.axes = principal_axes(target.surface.points());
   target.rho = (vertices.colwise() - target.center_of_mass).colwise().norm().maxCoeff();
   for (const robot::SceneBody& other : scene.bodies) {
     if (other.name == object || other.geometry.empty()) continue;
@@ -99,6 +115,15 @@ SurfaceSeed sample_surface(const GraspTarget& target, Rng& rng) {
   const double b = root * (1.0 - share);
   const double c = root * share;
   return {a + b * u + c * v, u.cross(v).normalized()};
+}
+
+SurfaceSeed sample_axis(const GraspTarget& target, Rng& rng) {
+  const auto axis = static_cast<Eigen::Index>(rng.index(3));
+  const Eigen::Vector3d n = rng.uniform() < 0.5 ? target.axes.col(axis).eval() : (-target.axes.col(axis)).eval();
+  const Eigen::Vector3d along = target.axes.col(2);
+  Eigen::Vector3d middle = target.center_of_mass;
+  if (axis != 2) middle += along * along.dot(sample_surface(target, rng).p_O - middle);
+  return {target.distance->query(middle + (target.rho + 0.1) * n).point, n};
 }
 
 }  // namespace opponens::grasp

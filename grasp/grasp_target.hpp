@@ -35,11 +35,14 @@ struct GraspTarget {
   PointTree surface;                ///< points 2.5 mm apart (or coarser: at most about 40,000)
   Eigen::VectorXd cumulative_area;  ///< [F] of the triangles, for uniform sampling
   Eigen::Vector3d center_of_mass;   ///< uniform density; mean of the vertices for an open mesh
+  Eigen::Matrix3d axes;             ///< columns: principal axes of the surface points' moments, the longest last
   double rho;                       ///< m, largest distance of a vertex from it
   std::vector<Obstacle> obstacles;  ///< every other body of the scene
   /// Of a lower bound of their distance, within 20 cm of the object; null: there are none.
   std::shared_ptr<const DistanceGrid> obstacle_grid;
 
+  /// The mesh's nearest point, exactly: distance->query with what the grid knows of the distance.
+  robot::MeshDistance::Query nearest(const Eigen::Vector3d& p_O) const;
   /// Distance of p_O to the nearest obstacle, and its gradient; a lower bound beyond horizon.
   SignedDistance obstacle_distance(const Eigen::Vector3d& p_O, double horizon) const;
 };
@@ -56,5 +59,8 @@ struct SurfaceSeed {
 };
 /// A point drawn uniformly by area.
 SurfaceSeed sample_surface(const GraspTarget& target, Rng& rng);
+/// The surface as seen along a principal axis, drawn with its sign (n_O): straight towards the centre of mass, or past
+/// it by where a point drawn by area lies along the longest axis.
+SurfaceSeed sample_axis(const GraspTarget& target, Rng& rng);
 
 }  // namespace opponens::grasp

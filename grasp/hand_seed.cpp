@@ -14,6 +14,7 @@ namespace {
 
 constexpr int kSeedAttempts = 20;      // poses drawn until the palm is clear
 constexpr int kSeeds = 8;              // drawn per trial; the best by the objective is optimised
+constexpr double kAxisShare = 0.25;    // of the seeds that come along a principal axis of the object
 constexpr double kMaxStandoff = 0.08;  // m between palm and object surface
 constexpr double kMaxTilt = 0.5;       // rad between approach direction and surface normal
 
@@ -46,7 +47,8 @@ std::optional<HandSeed> draw_seed(const SeedSpace& space, Rng& rng) {
     seed.y.resize(box.half_width.size());
     for (Eigen::Index i = 0; i < seed.y.size(); ++i) seed.y[i] = box.half_width[i] * rng.uniform(-1.0, 1.0);
     const auto X_HL = space.hand.link_poses(space.hand.clip(analysis::configuration(box, seed.y)));
-    const SurfaceSeed point = sample_surface(space.target, rng);
+    const bool by_axis = rng.uniform() < kAxisShare;
+    const SurfaceSeed point = by_axis ? sample_axis(space.target, rng) : sample_surface(space.target, rng);
     const Eigen::Vector3d d = tilt(-point.n_O, rng);
     const Eigen::AngleAxisd roll(2.0 * std::numbers::pi * rng.uniform(), d);
     seed.X_OH.linear() =

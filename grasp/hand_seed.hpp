@@ -21,7 +21,8 @@ struct SeedSpace {
   const SynergyBox& box;
 };
 
-/// Palm in front of a point of the object's surface (uniform by area) and facing it within 0.5 rad, random roll,
+/// Palm in front of a point of the object's surface (uniform by area; one in four as seen along a principal axis of the
+/// object) and facing it within 0.5 rad, random roll,
 /// standoff up to 8 cm, fingers anywhere in the box; out of 20 tries one whose palm is clear of object and obstacles.
 std::optional<HandSeed> draw_seed(const SeedSpace& space, Rng& rng);
 

@@ -195,8 +195,8 @@ int BoundingVolumeTree::build(std::vector<Item>& items, int begin, int end) {
   return index;
 }
 
-BoundingVolumeTree::Nearest BoundingVolumeTree::nearest(const Eigen::Vector3d& p) const {
-  Nearest best{kInfinity, p, -1, TriangleFeature::face};
+BoundingVolumeTree::Nearest BoundingVolumeTree::nearest(const Eigen::Vector3d& p, double within) const {
+  Nearest best{within * within, p, -1, TriangleFeature::face};
   struct Entry {
     double squared_distance;
     int first;

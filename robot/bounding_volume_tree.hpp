@@ -4,6 +4,7 @@
 
 #include <array>
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include <Eigen/Core>
@@ -39,8 +40,9 @@ class BoundingVolumeTree {
 
   explicit BoundingVolumeTree(const TriangleMesh& mesh);
 
-  /// Exact nearest point of the surface; of equally near triangles the one met first, which is always the same.
-  Nearest nearest(const Eigen::Vector3d& p) const;
+  /// Exact nearest point of the surface nearer than `within` (m); of equally near triangles the one met first, which is
+  /// always the same, whatever the bound. triangle = -1: there is none.
+  Nearest nearest(const Eigen::Vector3d& p, double within = std::numeric_limits<double>::infinity()) const;
 
   /// A lower bound of the distance from the box with these centre and half extents to something, m.
   using BoxBound = std::function<double(const Eigen::Vector3d& center, const Eigen::Vector3d& half_extents)>;

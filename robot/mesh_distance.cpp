@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <utility>
@@ -176,8 +177,13 @@ MeshDistance::MeshDistance(MeshDistance&&) noexcept = default;
 MeshDistance& MeshDistance::operator=(MeshDistance&&) noexcept = default;
 
 MeshDistance::Query MeshDistance::query(const Eigen::Vector3d& p) const {
+  return query(p, std::numeric_limits<double>::infinity());
+}
+
+MeshDistance::Query MeshDistance::query(const Eigen::Vector3d& p, double within) const {
   require(p.allFinite(), "MeshDistance: the point is not finite");
-  const BoundingVolumeTree::Nearest nearest = tree_->volumes.nearest(p);
+  BoundingVolumeTree::Nearest nearest = tree_->volumes.nearest(p, within);
+  if (nearest.triangle < 0) nearest = tree_->volumes.nearest(p);  // what was known of the point was wrong
   const Eigen::Vector3d away = p - nearest.point;
   const Eigen::Vector3d normal = tree_->normal(nearest.triangle, nearest.feature);
   const double distance = std::sqrt(nearest.squared_distance);

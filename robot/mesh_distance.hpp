@@ -30,6 +30,8 @@ class MeshDistance {
   MeshDistance& operator=(MeshDistance&&) noexcept;
 
   Query query(const Eigen::Vector3d& p) const;
+  /// The same, sooner, for a point that is known to be nearer to the surface than `within` (m).
+  Query query(const Eigen::Vector3d& p, double within) const;
   double signed_distance(const Eigen::Vector3d& p) const { return query(p).distance; }
   bool inside(const Eigen::Vector3d& p) const { return query(p).distance < 0.0; }
   const TriangleMesh& mesh() const;

@@ -111,6 +111,14 @@ TEST(GraspTarget, ReadsObjectAndObstaclesInTheObjectFrame) {
     EXPECT_NEAR(target.distance->signed_distance(seed.p_O), 0.0, 1e-12);
     EXPECT_NEAR(target.distance->signed_distance(seed.p_O + 0.01 * seed.n_O), 0.01, 1e-9);
   }
+  // The box's axes, the longest last; seeds along them lie on the face that looks that way.
+  EXPECT_NEAR(std::abs(target.axes(2, 2)), 1.0, 1e-6);
+  for (int i = 0; i < 100; ++i) {
+    const SurfaceSeed seed = sample_axis(target, rng);
+    EXPECT_NEAR(seed.n_O.cwiseAbs().maxCoeff(), 1.0, 1e-6);
+    EXPECT_NEAR(target.distance->signed_distance(seed.p_O), 0.0, 1e-12);
+    EXPECT_NEAR(target.distance->signed_distance(seed.p_O + 0.01 * seed.n_O), 0.01, 1e-6);
+  }
   EXPECT_THROW(make_target(scene, "nothing", 1), std::invalid_argument);
 }
 
