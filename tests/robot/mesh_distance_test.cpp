@@ -21,6 +21,7 @@
 #include "robot/bounding_volume_tree.hpp"
 #include "robot/mesh.hpp"
 #include "robot/narrow_phase.hpp"
+#include "tests/support/sample_count.hpp"
 
 namespace opponens::robot {
 namespace {
@@ -96,7 +97,7 @@ TEST(MeshDistance, EqualsBruteForce) {
   Rng rng(11);
   for (const TriangleMesh& mesh : {jagged(), triangulate(Sphere{0.3}, 24), triangulate(Box{{0.1, 0.2, 0.3}})}) {
     const MeshDistance distance(share(mesh));
-    for (int i = 0; i < 2000; ++i) {
+    for (int i = 0; i < sample_count(2000); ++i) {
       const Eigen::Vector3d p = random_point(mesh, i % 2 == 0 ? 0.005 : 0.3, rng);
       EXPECT_NEAR(std::abs(distance.signed_distance(p)), brute_force(mesh, p), 1e-12);
     }
@@ -109,13 +110,13 @@ TEST(MeshDistance, AgreesWithCgal) {
     const MeshDistance distance(share(mesh));
     const Oracle oracle(mesh);
     int inside = 0;
-    for (int i = 0; i < 4000; ++i) {
+    for (int i = 0; i < sample_count(4000); ++i) {
       const Eigen::Vector3d p = random_point(mesh, i % 2 == 0 ? 0.003 : 0.1, rng);
       const double expected = oracle.signed_distance(p);
       EXPECT_NEAR(distance.signed_distance(p), expected, 1e-12) << p.transpose();
       inside += expected < 0.0 ? 1 : 0;
     }
-    EXPECT_GT(inside, 400);  // both signs were seen
+    EXPECT_GT(inside, sample_count(400));  // both signs were seen
   }
 }
 
@@ -127,7 +128,7 @@ TEST(MeshDistance, AgreesWithCgalOnARealObject) {
   const auto mesh = load_mesh(file);
   const MeshDistance distance(mesh);
   const Oracle oracle(*mesh);
-  for (int i = 0; i < 5000; ++i) {
+  for (int i = 0; i < sample_count(5000); ++i) {
     const Eigen::Vector3d p = random_point(*mesh, 0.01, rng);
     EXPECT_NEAR(distance.signed_distance(p), oracle.signed_distance(p), 1e-12) << p.transpose();
   }
@@ -220,7 +221,7 @@ TEST(MeshDistance, SurvivesTrianglesWithoutArea) {
   ASSERT_TRUE(is_closed(mesh));
   const MeshDistance distance(share(mesh));
   Rng rng(16);
-  for (int i = 0; i < 2000; ++i) {
+  for (int i = 0; i < sample_count(2000); ++i) {
     const Eigen::Vector3d p = 1.2 * Eigen::Vector3d(rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(-1, 1));
     const Eigen::Vector3d over = p.cwiseAbs() - Eigen::Vector3d::Ones();
     const double expected = over.cwiseMax(0.0).norm() + std::min(over.maxCoeff(), 0.0);

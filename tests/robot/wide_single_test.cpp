@@ -17,6 +17,7 @@
 #include "robot/load_robot.hpp"
 #include "robot/wide_world.hpp"
 #include "robot_test.hpp"
+#include "tests/support/sample_count.hpp"
 
 namespace opponens::robot {
 namespace {
@@ -129,7 +130,7 @@ TEST(WideSingle, PlacesAreWithinAQuarterOfTheMargin) {
 
 TEST(WideSingle, SineAndCosine) {
   Rng rng(2);
-  for (int i = 0; i < 20000; ++i) {
+  for (int i = 0; i < sample_count(20000); ++i) {
     wide::D angle;
     for (int lane = 0; lane < wide::kLanes; ++lane) {
       const double special = 0.25 * static_cast<double>(static_cast<int>(rng.index(9)) - 4) * 3.14159265358979;

@@ -18,6 +18,7 @@
 #include "robot/load_robot.hpp"
 #include "robot/wide_world.hpp"
 #include "robot_test.hpp"
+#include "tests/support/sample_count.hpp"
 
 namespace opponens::robot {
 namespace {
@@ -172,7 +173,7 @@ TEST(WideSweep, LongSlidesWidenTheMargin) {
 
 TEST(WideSweep, SineAndCosine) {
   Rng rng(4);
-  for (int i = 0; i < 20000; ++i) {
+  for (int i = 0; i < sample_count(20000); ++i) {
     wide::V angle;
     for (int lane = 0; lane < wide::kLanes; ++lane) {
       const double special = 0.25 * static_cast<double>(static_cast<int>(rng.index(9)) - 4) * 3.14159265358979;
@@ -204,7 +205,7 @@ wide::LaneBox lane_box(const Isometry3d& X) {
 TEST(WideSweep, NearlyParallelBoxesThatOverlapAreNeverApart) {
   // No margin here: what is left is the arithmetic of axes whose cross products nearly vanish.
   Rng rng(5);
-  for (int i = 0; i < 20000; ++i) {
+  for (int i = 0; i < sample_count(20000); ++i) {
     Vector3d h(rng.uniform(0.01, 0.02), rng.uniform(0.01, 0.02), rng.uniform(0.5, 1.0));
     Vector3d g(rng.uniform(0.01, 0.02), rng.uniform(0.5, 1.0), rng.uniform(0.01, 0.02));
     const Isometry3d X_WA = random_pose(1.0, rng);
