@@ -6,8 +6,11 @@
 #include <functional>
 #include <memory>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "cli/commands.hpp"
+#include "motion/syn_planner.hpp"
 
 namespace opponens::cli {
 namespace {
@@ -201,8 +204,10 @@ void declare_plan(CLI::App& app, PlanOptions& options) {
   add_world(app, options);
   add_seed(app, options.common.seed);
   add_threads(app, options.common.threads);
-  app.add_option("--planner", options.planner, "synergy (Algorithms 2-4) or rrtconnect (multi-goal baseline)")
-      ->check(CLI::IsMember({"synergy", "rrtconnect"}))
+  app.add_option("--planner", options.planner,
+                 "synergy (Algorithms 2-4), rrtconnect (multi-goal baseline), or an ablation: synergy_sampling (boxes "
+                 "for targets only), pregrasp_box (no boxes for the goals' trees)")
+      ->check(CLI::IsMember(std::vector<std::string>(motion::kVariantNames.begin(), motion::kVariantNames.end())))
       ->capture_default_str();
   app.add_option("--runs", options.runs, "Queries with seeds seed, seed+1, ...")
       ->check(CLI::Range(1, 100000))

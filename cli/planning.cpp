@@ -83,7 +83,9 @@ Planning::Planning(const PlanOptions& options, const NamedWorld& world, Query qu
       closing_(world.robot, motion::grown_scene(world.scene, free_.margin, world.object), world.hand_object_pairs()),
       depth_(world.robot, world.scene, world.object, world.hand_links()),
       space_(motion::make_world(free_.checker, world.robot, options.resolution)) {
-  settings_.variant = options.planner == "synergy" ? motion::Variant::synergy : motion::Variant::rrtconnect;
+  const auto variant = motion::variant_named(options.planner);
+  require(variant.has_value(), "--planner: no such planner: " + options.planner);
+  settings_.variant = *variant;
   settings_.step = options.step;
   settings_.max_checks = options.max_checks;
   settings_.time_limit = options.time_limit;

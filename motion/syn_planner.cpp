@@ -54,6 +54,10 @@ class Run {
  private:
   std::optional<PlanStatus> end_condition();
   Eigen::VectorXd random_configuration();
+  bool follows_boxes() const {
+    return settings_.variant == Variant::synergy || settings_.variant == Variant::pregrasp_box;
+  }
+  Extension extend(Graph& graph, const Eigen::VectorXd& q_rand);
   bool plant_roots();
   void plant_goals();
   std::optional<Bridge> connect(int vertex_new, Graph& a, Graph& b);
@@ -83,11 +87,9 @@ PlanResult Run::planner() {
   while (true) {
     if (const auto status = end_condition()) return finished(*status);  // line 4
     ++result_.iterations;
-    const Eigen::VectorXd q_rand = random_configuration();  // line 5
-    const bool along_synergies =
-        rng_.uniform() >= settings_.full_space_probability && settings_.variant == Variant::synergy;
-    const Extension q_new = syn_extend(*a, q_rand, along_synergies, steps_, world_, counts_);  // line 6
-    const auto found = q_new.grew() ? connect(q_new.vertex, *a, *b) : std::nullopt;            // line 7
+    const Eigen::VectorXd q_rand = random_configuration();                           // line 5
+    const Extension q_new = extend(*a, q_rand);                                      // line 6
+    const auto found = q_new.grew() ? connect(q_new.vertex, *a, *b) : std::nullopt;  // line 7
     if (found) {
       const Bridge bridge = a == &start_graph_ ? *found : Bridge{found->vertex_b, found->vertex_a};
       if (confirmed(bridge)) {
@@ -99,9 +101,20 @@ PlanResult Run::planner() {
   }
 }
 
+/// One step towards a random target. Every variant draws the same numbers.
+Extension Run::extend(Graph& graph, const Eigen::VectorXd& q_rand) {
+  const bool projected = rng_.uniform() >= settings_.full_space_probability;
+  if (settings_.variant == Variant::synergy_sampling && projected) {
+    const int near = graph.forest.nearest(q_rand).vertex;
+    const Projection& project = graph.projections[static_cast<std::size_t>(graph.forest.root(near))];
+    return syn_extend(graph, project ? project(q_rand) : q_rand, false, steps_, world_, counts_);
+  }
+  return syn_extend(graph, q_rand, projected && follows_boxes(), steps_, world_, counts_);
+}
+
 std::optional<Bridge> Run::connect(int vertex_new, Graph& a, Graph& b) {
-  return settings_.variant == Variant::synergy ? syn_connect(vertex_new, a, b, steps_, world_, counts_)
-                                               : straight_connect(vertex_new, a, b, steps_, world_, counts_);
+  return follows_boxes() ? syn_connect(vertex_new, a, b, steps_, world_, counts_)
+                         : straight_connect(vertex_new, a, b, steps_, world_, counts_);
 }
 
 std::optional<PlanStatus> Run::end_condition() {
@@ -159,7 +172,8 @@ void Run::plant_goals() {
   for (std::size_t i = 0; i < inside.size(); ++i) {
     if (!free[i]) continue;
     goal_graph_.forest.add_root(inside[i]->q);
-    goal_graph_.projections.push_back(inside[i]->project);
+    const bool plain = settings_.variant == Variant::pregrasp_box;
+    goal_graph_.projections.push_back(plain ? Projection() : inside[i]->project);
     goal_of_root_.push_back(inside[i]->goal);
   }
 }
@@ -221,6 +235,12 @@ PlanResult Run::finished(PlanStatus status, std::string detail) {
 }
 
 }  // namespace
+
+std::optional<Variant> variant_named(std::string_view name) {
+  const auto found = std::find(kVariantNames.begin(), kVariantNames.end(), name);
+  if (found == kVariantNames.end()) return std::nullopt;
+  return static_cast<Variant>(found - kVariantNames.begin());
+}
 
 void validate(const PlannerSettings& settings) {
   const auto check = [](bool holds, const std::string& field, double value, const std::string& constraint) {

@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
@@ -25,9 +27,19 @@ struct GoalRoot {
 };
 
 enum class Variant {
-  synergy,     ///< Algorithms 2-4 (the paper's case b)
-  rrtconnect,  ///< the multi-goal RRT-Connect baseline (case a): no PROJECT, no SYNCONNECT, no fallback
+  synergy,           ///< Algorithms 2-4 (the paper's case b)
+  rrtconnect,        ///< the multi-goal RRT-Connect baseline (case a): no PROJECT, no SYNCONNECT, no fallback
+  synergy_sampling,  ///< ablation: targets projected onto the box of the tree nearest to them; steps and CONNECT
+                     ///< straight
+  pregrasp_box,  ///< ablation: Algorithms 2-4 with the start's box alone; PROJECT of the goals' trees is the identity
 };
+
+/// In the order of the enumerators.
+inline constexpr std::array<std::string_view, 4> kVariantNames{"synergy", "rrtconnect", "synergy_sampling",
+                                                               "pregrasp_box"};
+
+/// nullopt when no variant is called that.
+std::optional<Variant> variant_named(std::string_view name);
 
 struct PlannerSettings {
   Variant variant = Variant::synergy;

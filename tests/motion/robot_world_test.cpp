@@ -262,7 +262,9 @@ TEST(GrownScene, KeepsTheMarginFromEveryShapeButTheException) {
 }
 
 class RobotPlan : public RobotWorld, public ::testing::WithParamInterface<Variant> {};
-INSTANTIATE_TEST_SUITE_P(Variants, RobotPlan, ::testing::Values(Variant::synergy, Variant::rrtconnect));
+INSTANTIATE_TEST_SUITE_P(Variants, RobotPlan,
+                         ::testing::Values(Variant::synergy, Variant::rrtconnect, Variant::synergy_sampling,
+                                           Variant::pregrasp_box));
 
 TEST_P(RobotPlan, ReachesTheShelf) {
   const auto grasp = reachable();
