@@ -55,7 +55,10 @@ void say_goals(const PlanDiagnostics& diagnostics, const std::function<std::stri
     if (goal.fate == GoalFate::in_collision) {
       cause = "in collision" + (goal.pairs.empty() ? std::string() : ": " + words(goal.pairs));
     }
-    if (goal.fate == GoalFate::not_joined) cause = "not reached by the search before it ended (they join later)";
+    // A search that could not start asked about no goal.
+    if (goal.fate == GoalFate::not_joined && diagnostics.start_vertices > 0) {
+      cause = "to join at a later pass than the search made";
+    }
     if (goal.fate == GoalFate::rooted && goal.vertices == 1) cause = "rooted, but its tree never grew";
     if (cause.empty()) continue;
     auto& names = by_cause[cause];

@@ -26,7 +26,7 @@ enum class GoalFate {
   rooted,          ///< grew a tree, or could have
   outside_limits,  ///< see GoalDiagnosis::outside
   in_collision,    ///< see GoalDiagnosis::pairs
-  not_joined,      ///< the search ended before the iteration at which it was to join
+  not_joined,      ///< the search ended before it was asked about: it was to join later, or the start was refused
 };
 
 struct GoalDiagnosis {

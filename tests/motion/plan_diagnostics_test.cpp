@@ -95,6 +95,7 @@ TEST(PlanDiagnostics, GoalsAndStartAreExplained) {
   ASSERT_EQ(start.status, PlanStatus::start_in_collision);
   EXPECT_EQ(start.diagnostics->start_pairs, (std::vector<NamePair>{{"point", "wall 0"}}));
   EXPECT_TRUE(says(*start.diagnostics, "at the start collide: point with wall 0"));
+  EXPECT_FALSE(says(*start.diagnostics, "goal 7")) << "no goal was asked about";
   EXPECT_FALSE(plan_toy(toy, kWestOfWall, goals_east(), {}, 1).diagnostics)
       << "not of a success that nobody asked about";
 }
