@@ -214,8 +214,10 @@ void declare_plan(CLI::App& app, PlanOptions& options) {
       ->capture_default_str();
   app.add_option("--time-limit", options.time_limit,
                  "Seconds per run, more than 0; left out: no limit (the search stops on counts)")
-      ->check(CLI::PositiveNumber)
-      ->check(CLI::Range(0.0, 1e6));
+      ->check(CLI::Range(0.0, 1e6))
+      ->check([](const std::string& seconds) {
+        return std::stod(seconds) > 0.0 ? "" : "no search finds anything in 0 s; for no limit leave the option out";
+      });
   app.add_option("--max-checks", options.max_checks, "Configurations checked per run, asked once a pass; 0 = no limit")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();

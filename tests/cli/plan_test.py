@@ -62,7 +62,7 @@ class Plan(unittest.TestCase):
         self.refused("--store", self.empty, "--scene", SCENE, words=["no grasps of", "opponens grasp"])
 
     def test_a_time_limit_of_zero_is_refused(self):
-        for limit, word in (("0", "--time-limit"), ("-1", "--time-limit"), ("nan", "time_limit")):
+        for limit, word in (("0", "for no limit leave the option out"), ("-1", "--time-limit"), ("nan", "leave the option out")):
             self.refused("--store", self.store, "--scene", SCENE, f"--time-limit={limit}", words=[word])
 
     def test_unknown_and_missing_joints_of_the_start(self):
