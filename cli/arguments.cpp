@@ -6,8 +6,11 @@
 #include <functional>
 #include <memory>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "cli/commands.hpp"
+#include "motion/syn_planner.hpp"
 
 namespace opponens::cli {
 namespace {
@@ -201,24 +204,38 @@ void declare_plan(CLI::App& app, PlanOptions& options) {
   add_world(app, options);
   add_seed(app, options.common.seed);
   add_threads(app, options.common.threads);
-  app.add_option("--planner", options.planner, "synergy (Algorithms 2-4) or rrtconnect (multi-goal baseline)")
-      ->check(CLI::IsMember({"synergy", "rrtconnect"}))
+  app.add_option("--planner", options.planner,
+                 "synergy (Algorithms 2-4), rrtconnect (multi-goal baseline), or an ablation: synergy_sampling (boxes "
+                 "for targets only), pregrasp_box (no boxes for the goals' trees)")
+      ->check(CLI::IsMember(std::vector<std::string>(motion::kVariantNames.begin(), motion::kVariantNames.end())))
       ->capture_default_str();
   app.add_option("--runs", options.runs, "Queries with seeds seed, seed+1, ...")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
-  app.add_option("--time-limit", options.time_limit, "Seconds per run; 0 = none (the search stops on counts)")
+  app.add_option("--time-limit", options.time_limit,
+                 "Seconds per run, more than 0; left out: no limit (the search stops on counts)")
       ->check(CLI::Range(0.0, 1e6))
-      ->capture_default_str();
+      ->check([](const std::string& seconds) {
+        return std::stod(seconds) > 0.0 ? "" : "no search finds anything in 0 s; for no limit leave the option out";
+      });
   app.add_option("--max-checks", options.max_checks, "Configurations checked per run, asked once a pass; 0 = no limit")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  app.add_option("--step", options.step, "Longest step of a tree, rad")
-      ->check(CLI::Range(1e-3, 10.0))
+  app.add_option("--step", options.step, "Longest step of a tree, rad, over all joints")
+      ->check(CLI::Range(1e-3, 100.0))
       ->capture_default_str();
-  app.add_option("--resolution", options.resolution, "Spacing of checked configurations, rad")
-      ->check(CLI::Range(1e-4, 1.0))
+  app.add_option("--resolution", options.resolution, "Spacing of checked configurations, rad, over all joints")
+      ->check(CLI::Range(1e-4, 100.0))
       ->capture_default_str();
+  const auto own = [&app](const std::string& of, const std::string& what, GroupLengths& lengths, double least) {
+    app.add_option("--arm-" + of, lengths.arm, what + " over the arm's joints alone, rad; default: none of its own")
+        ->check(CLI::Range(least, 100.0));
+    app.add_option("--hand-" + of, lengths.hand, what + " over the hand's joints alone, rad; default: none of its own")
+        ->check(CLI::Range(least, 100.0));
+  };
+  own("step", "Longest step", options.own_step, 1e-3);
+  own("resolution", "Spacing of checked configurations", options.own_resolution, 1e-4);
+  app.add_flag("--diagnose", options.diagnose, "Tell of runs that succeeded, too, what the search met");
 }
 
 void declare_check(CLI::App& app, CheckOptions& options) {

@@ -83,6 +83,11 @@ struct GraspOptions {
   GraspNoise noise{};              ///< samples 0: no quality under errors
   std::string import{};            ///< file of grasps made elsewhere; empty: search
 };
+/// Lengths of their own for the joints of arm and hand, rad.
+struct GroupLengths {
+  std::optional<double> arm{};
+  std::optional<double> hand{};
+};
 struct PlanOptions {
   Common common{};
   std::string robot = "models/ur5_allegro/ur5_allegro_right.yaml";
@@ -90,10 +95,13 @@ struct PlanOptions {
   std::string object{};
   std::string planner = "synergy";
   int runs = 1;
-  double time_limit = 0.0;      ///< s, 0: none
-  std::int64_t max_checks = 0;  ///< 0: none
-  double step = 0.4;            ///< rad
-  double resolution = 0.02;     ///< rad
+  std::optional<double> time_limit{};  ///< s
+  std::int64_t max_checks = 0;         ///< 0: none
+  double step = 0.4;                   ///< rad
+  double resolution = 0.02;            ///< rad
+  GroupLengths own_step{};             ///< of arm and hand
+  GroupLengths own_resolution{};
+  bool diagnose = false;  ///< tell of successes too what the search met
 };
 struct VerifyOptions {
   Common common{};

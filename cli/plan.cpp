@@ -10,6 +10,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/json.hpp"
+#include "cli/plan_diagnostics.hpp"
 #include "cli/planning.hpp"
 #include "cli/stored.hpp"
 #include "storage/codec.hpp"
@@ -18,8 +19,9 @@ namespace opponens::cli {
 namespace {
 
 /// Runs are independent of each other, so they may be spread over threads in any way. Those that were finished when the
-/// user interrupted are returned, in the order of their seeds.
-std::vector<Run> run_all(const Planning& planning, const PlanOptions& options, int threads, Progress& progress) {
+/// user interrupted are returned, in the order of their seeds. What the interrupted ones had found is said.
+std::vector<Run> run_all(const Planning& planning, const PlanOptions& options, int threads, Progress& progress,
+                         const Console& console) {
   std::vector<std::optional<Run>> runs(static_cast<std::size_t>(options.runs));
   std::atomic<std::size_t> next{0};
   std::atomic<std::int64_t> done{0};
@@ -29,7 +31,11 @@ std::vector<Run> run_all(const Planning& planning, const PlanOptions& options, i
     try {
       for (std::size_t i = next++; i < runs.size() && !interrupt_requested; i = next++) {
         Run run = planning.run(options.common.seed + i);
-        if (run.planned.status == PlanStatus::interrupted) continue;
+        if (run.planned.status == PlanStatus::interrupted) {
+          const std::lock_guard lock(guard);
+          say_failure(console, run, planning);
+          continue;
+        }
         runs[i] = std::move(run);
         ++done;
         if (reports) progress.update(done, options.runs);
@@ -54,7 +60,8 @@ std::vector<Run> run_all(const Planning& planning, const PlanOptions& options, i
   return finished;
 }
 
-Json run_json(const Run& run, const Query& query) {
+Json run_json(const Run& run, const Planning& planning) {
+  const Query& query = planning.query();
   const auto& planned = run.planned;
   const bool solved = planned.status == PlanStatus::solved;
   const Json likeness = solved ? run.human_likeness.front() : Json{{"value", nullptr}, {"reference", nullptr}};
@@ -76,12 +83,26 @@ Json run_json(const Run& run, const Query& query) {
           {"shortened_length_rad", solved ? Json(run.length) : Json(nullptr)},
           {"human_likeness", likeness.at("value")},
           {"human_likeness_reference", likeness.at("reference")},
-          {"human_likeness_all", run.human_likeness}};
+          {"human_likeness_all", run.human_likeness},
+          {"goals_refused", planned.goals_refused},
+          {"diagnostics", diagnostics_json(run, planning)}};
 }
 
 Json parameters_json(const PlanOptions& options, const NamedWorld& world) {
-  return {{"world", world.parameters},        {"planner", options.planner},       {"step", options.step},
-          {"resolution", options.resolution}, {"max_checks", options.max_checks}, {"time_limit", options.time_limit}};
+  Json parameters = {{"world", world.parameters},
+                     {"planner", options.planner},
+                     {"step", options.step},
+                     {"resolution", options.resolution},
+                     {"max_checks", options.max_checks},
+                     {"time_limit", options.time_limit.value_or(0.0)}};
+  const auto add = [&](const char* name, const std::optional<double>& own) {
+    if (own) parameters[name] = *own;
+  };
+  add("arm_step", options.own_step.arm);
+  add("hand_step", options.own_step.hand);
+  add("arm_resolution", options.own_resolution.arm);
+  add("hand_resolution", options.own_resolution.hand);
+  return parameters;
 }
 
 storage::Record run_record(const Run& run, const Query& query, const storage::Provenance& origin,
@@ -103,10 +124,10 @@ storage::Record run_record(const Run& run, const Query& query, const storage::Pr
   return record;
 }
 
-void say_run(const Console& console, const Run& run, const Query& query) {
+void say_run(const Console& console, const Run& run, const Planning& planning) {
+  const Query& query = planning.query();
   if (run.planned.status != PlanStatus::solved) {
-    console.say("seed " + std::to_string(run.seed) + ": " + status_name(run.planned.status) + ": " +
-                run.planned.detail);
+    say_failure(console, run, planning);
     return;
   }
   char text[320];
@@ -118,6 +139,7 @@ void say_run(const Console& console, const Run& run, const Query& query) {
                 static_cast<long long>(run.planned.iterations), static_cast<long long>(run.planned.collision_checks),
                 run.planned.length, run.planned.length_l1, run.length, run.times(run.times.size() - 1));
   console.say(text);
+  say_diagnostics(console, run, planning);
 }
 
 Json path_json(const Run& run) {
@@ -129,15 +151,16 @@ Json path_json(const Run& run) {
 }
 
 /// The paths of the solved runs, and after them the record of every run: a success rate needs those that failed.
-std::vector<storage::Record> records_of(const std::vector<Run>& runs, const Query& query, const PlanOptions& options,
-                                        const NamedWorld& world) {
+std::vector<storage::Record> records_of(const std::vector<Run>& runs, const Planning& planning,
+                                        const PlanOptions& options, const NamedWorld& world) {
+  const Query& query = planning.query();
   std::vector<std::string> inputs;
   for (const auto& grasp : query.grasps) inputs.push_back(grasp.id);
   const auto origin = provenance("plan", inputs, world.files, parameters_json(options, world), options.common.seed);
   std::vector<storage::Record> records;
   Json all = Json::array();
   for (const auto& run : runs) {
-    all.push_back(run_json(run, query));
+    all.push_back(run_json(run, planning));
     all.back()["path"] = nullptr;
     if (run.planned.status != PlanStatus::solved) continue;
     records.push_back(run_record(run, query, origin, world.object));
@@ -178,10 +201,10 @@ int plan(const PlanOptions& options, const Console& console) {
   Json result = document("plan");
   result["warnings"] = advise(world, planning, console);
   Progress progress(console, "planning");
-  const auto runs = run_all(planning, options, threads, progress);
+  const auto runs = run_all(planning, options, threads, progress, console);
   if (runs.empty()) throw Interrupted();
 
-  auto ids = store.commit(records_of(runs, planning.query(), options, world));
+  auto ids = store.commit(records_of(runs, planning, options, world));
   log.finish(ids, times_json(runs, options, ids.back()));
   if (interrupt_requested) throw Interrupted();
   result["plan_runs"] = ids.back();
@@ -190,9 +213,9 @@ int plan(const PlanOptions& options, const Console& console) {
   result["runs"] = Json::array();
   const Run* shown = nullptr;
   for (const auto& run : runs) {
-    result["runs"].push_back(run_json(run, planning.query()));
+    result["runs"].push_back(run_json(run, planning));
     result["runs"].back()["cpu_seconds"] = run.cpu_seconds;
-    say_run(console, run, planning.query());
+    say_run(console, run, planning);
     if (shown == nullptr && run.planned.status == PlanStatus::solved) shown = &run;
   }
   result["path"] = shown == nullptr ? Json(nullptr) : path_json(*shown);

@@ -11,6 +11,8 @@
 #include "motion/edge_check.hpp"
 #include "motion/goal_configurations.hpp"
 #include "motion/grown_scene.hpp"
+#include "motion/joint_groups.hpp"
+#include "motion/pair_depth.hpp"
 #include "motion/shortcut.hpp"
 #include "motion/timing.hpp"
 
@@ -34,6 +36,19 @@ FreeSpace free_space(const Eigen::VectorXd& start, const NamedWorld& world) {
   robot::CollisionChecker grown(world.robot, motion::grown_scene(world.scene, kMargin));
   if (grown.free(start)) return {kMargin, std::move(grown)};
   return {0.0, robot::CollisionChecker(world.robot, world.scene)};
+}
+
+std::vector<motion::GroupLimit> limits_of(const robot::RobotModel& robot, const GroupLengths& own) {
+  std::vector<motion::GroupLimit> limits;
+  if (own.arm) limits.push_back(motion::limit_of(robot.arm(), *own.arm));
+  if (own.hand) limits.push_back(motion::limit_of(robot.hand(), *own.hand));
+  return limits;
+}
+
+/// Closing segments are looked at as densely as any group's motion.
+double densest(const PlanOptions& options) {
+  const GroupLengths& own = options.own_resolution;
+  return std::min({options.resolution, own.arm.value_or(options.resolution), own.hand.value_or(options.resolution)});
 }
 
 double thread_cpu_seconds() {
@@ -82,30 +97,41 @@ Planning::Planning(const PlanOptions& options, const NamedWorld& world, Query qu
       closing_free_(world.robot, motion::grown_scene(world.scene, free_.margin, world.object)),
       closing_(world.robot, motion::grown_scene(world.scene, free_.margin, world.object), world.hand_object_pairs()),
       depth_(world.robot, world.scene, world.object, world.hand_links()),
-      space_(motion::make_world(free_.checker, world.robot, options.resolution)) {
-  settings_.variant = options.planner == "synergy" ? motion::Variant::synergy : motion::Variant::rrtconnect;
+      space_(motion::make_world(free_.checker, world.robot,
+                                {options.resolution, limits_of(world.robot, options.own_resolution)})) {
+  const auto variant = motion::variant_named(options.planner);
+  require(variant.has_value(), "--planner: no such planner: " + options.planner);
+  settings_.variant = *variant;
   settings_.step = options.step;
   settings_.max_checks = options.max_checks;
-  settings_.time_limit = options.time_limit;
+  settings_.group_steps = limits_of(world.robot, options.own_step);
+  settings_.diagnose = options.diagnose;
+  settings_.time_limit = options.time_limit.value_or(0.0);
   settings_.interrupted = [] { return interrupt_requested.load(); };
   motion::validate(settings_);
   leave_out_goals();
+  if (keeps_margin()) return;
+  for (const auto& pair : free_.checker.colliding_pairs(query_.start)) {
+    start_depths_[pair] = motion::pair_depth(world_.robot, world_.scene, query_.start, pair);
+  }
 }
 
 /// What may touch on the closing segment: the links of the grasp's own contacts with the object, and nothing else.
 motion::World Planning::closing_of(const Grasp& grasp) const {
-  return motion::closing_world(closing_free_, closing_, world_.robot, grasp.contacts, options_.resolution, {&depth_});
+  return motion::closing_world(closing_free_, closing_, world_.robot, grasp.contacts, densest(options_), {&depth_});
 }
 
 /// A goal is of use only when the hand can close from it. The grasps were asked at a spacing of their own, so this is
-/// asked again at the chosen one, before the planner may choose such a goal and lose the others with it.
+/// asked again at the chosen one, before the planner may choose such a goal and lose the others with it. Goals that are
+/// no place to be at all are left to the planner, which says why it does not use them.
 void Planning::leave_out_goals() {
   Query kept{query_.start, std::move(query_.synergies), std::move(query_.grasps), {}, {}, {}};
   for (std::size_t i = 0; i < query_.goals.size(); ++i) {
     const std::size_t grasp = query_.grasp_of_goal[i];
     const auto segment = motion::closing_segment(query_.goals[i].q, query_.q_grasp[i], world_.robot.hand(),
                                                  closing_of(kept.grasps[grasp].value));
-    if (segment.invalid) {
+    const Eigen::VectorXd& q = query_.goals[i].q;
+    if (segment.invalid && world_.robot.within_limits(q) && free_.checker.free(q)) {
       ++goals_left_out_;
       continue;
     }
@@ -125,11 +151,16 @@ Run Planning::run(std::uint64_t seed) const {
                                 robot.hand(), robot.lower(), robot.upper(), robot.weights(), space_, settings_, seed);
   result.cpu_seconds = thread_cpu_seconds() - begin;
   if (result.planned.status == PlanStatus::solved) finish(result);
-  if (query_.goals.empty()) {
+  if (query_.goals.empty() && result.planned.status == PlanStatus::no_goals) {
     result.planned.detail =
         "of " + std::to_string(goals_left_out_) + " goals none has a valid closing segment at this resolution";
   }
   return result;
+}
+
+double Planning::start_depth(const robot::BodyPair& pair) const {
+  const auto found = start_depths_.find(pair);
+  return found == start_depths_.end() ? 0.0 : found->second;
 }
 
 void Planning::finish(Run& run) const {

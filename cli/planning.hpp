@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "cli/stored.hpp"
 #include "cli/world.hpp"
 #include "motion/contact_depth.hpp"
+#include "motion/plan_diagnostics.hpp"
 #include "motion/syn_planner.hpp"
 #include "robot/collision.hpp"
 
@@ -35,9 +37,9 @@ std::optional<analysis::LikenessReference> free_motion_reference(const storage::
 
 struct Run {
   std::uint64_t seed = 0;
-  PlanResult planned;     ///< as the planner returned it, up to the pre-grasp
-  JointPath motion;       ///< shortened, with the closing segment
-  Eigen::VectorXd times;  ///< [N] s
+  motion::PlanAnswer planned;  ///< as the planner returned it, up to the pre-grasp
+  JointPath motion;            ///< shortened, with the closing segment
+  Eigen::VectorXd times;       ///< [N] s
   int pregrasp_row = -1;
   double length = 0.0;       ///< rad, of the shortened path up to the pre-grasp
   double cpu_seconds = 0.0;  ///< of the planner; goes to documents, never into the store
@@ -63,6 +65,8 @@ class Planning {
   const robot::CollisionChecker& checker() const { return free_.checker; }
   bool keeps_margin() const { return free_.margin > 0.0; }
   Run run(std::uint64_t seed) const;
+  /// m, how deep a pair that collides at the start is; 0 of others.
+  double start_depth(const robot::BodyPair& pair) const;
 
  private:
   void leave_out_goals();
@@ -80,6 +84,7 @@ class Planning {
   motion::ContactDepth depth_;
   motion::World space_;
   motion::PlannerSettings settings_;
+  std::map<robot::BodyPair, double> start_depths_;  ///< m, of the pairs that collide at the start
   std::size_t goals_left_out_ = 0;
 };
 

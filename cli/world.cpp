@@ -93,6 +93,14 @@ void require_same_joints(const SynergySet& synergies, const robot::RobotModel& h
 }
 
 Eigen::VectorXd start_configuration(const robot::RobotModel& robot, const robot::Scene& scene) {
+  // A scene's start may name joints that rest here, such as the other arm's; a name that no joint has is a mistake.
+  for (const auto& name : scene.start_joints) {
+    const auto& joints = robot.description().joints;
+    if (std::none_of(joints.begin(), joints.end(), [&](const robot::Joint& joint) { return joint.name == name; })) {
+      throw InputError(scene.name + ": the scene's start configuration names joint " + name +
+                       ", which the robot does not have");
+    }
+  }
   Eigen::VectorXd q(robot.dof());
   for (int i = 0; i < robot.dof(); ++i) {
     const auto& name = robot.joint_names()[static_cast<std::size_t>(i)];

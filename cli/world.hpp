@@ -48,8 +48,8 @@ std::vector<std::string> warnings_of(const NamedWorld& world, const robot::Colli
 /// Throws InputError unless the synergies are about this hand's joints, in its order.
 void require_same_joints(const SynergySet& synergies, const robot::RobotModel& hand);
 
-/// The scene's start configuration in the robot's joint order. Throws InputError when it has none or a joint is
-/// missing.
+/// The scene's start configuration in the robot's joint order. Throws InputError when it has none, a joint is
+/// missing, or it names one that the robot does not have.
 Eigen::VectorXd start_configuration(const robot::RobotModel& robot, const robot::Scene& scene);
 
 }  // namespace opponens::cli

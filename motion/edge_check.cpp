@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/require.hpp"
-#include "motion/joint_metric.hpp"
+#include "motion/joint_groups.hpp"
 
 namespace opponens::motion {
 
@@ -17,9 +17,9 @@ constexpr double kConfirmShare = 10.0;  ///< an answer is asked again this much 
 /// The checked fractions of a motion in order: its end, then the inner ones by bisection.
 class CoarseToFine {
  public:
-  CoarseToFine(double length, double resolution) {
-    require(std::isfinite(length), "first_invalid: configurations must be finite");
-    segments_ = static_cast<std::uint64_t>(std::ceil(length / resolution));
+  explicit CoarseToFine(double segments) {
+    require(std::isfinite(segments), "first_invalid: configurations must be finite");
+    segments_ = static_cast<std::uint64_t>(std::ceil(segments));
     while ((std::uint64_t{1} << bits_) < segments_) ++bits_;
   }
 
@@ -53,8 +53,8 @@ Eigen::VectorXd between(const Eigen::VectorXd& q_from, const Eigen::VectorXd& q_
 }  // namespace
 
 std::optional<double> first_invalid(const Eigen::VectorXd& q_from, const Eigen::VectorXd& q_to, const Validity& valid,
-                                    const Eigen::VectorXd& weights, double resolution, std::int64_t& checks) {
-  CoarseToFine fractions(distance(weights, q_from, q_to), resolution);
+                                    const Eigen::VectorXd& weights, const Spacing& resolution, std::int64_t& checks) {
+  CoarseToFine fractions(spacings(resolution, weights, q_from, q_to));
   while (const std::optional<double> fraction = fractions.next()) {
     ++checks;
     if (!valid(between(q_from, q_to, *fraction))) return fraction;
@@ -64,8 +64,8 @@ std::optional<double> first_invalid(const Eigen::VectorXd& q_from, const Eigen::
 
 std::optional<double> first_invalid_by_rows(const Eigen::VectorXd& q_from, const Eigen::VectorXd& q_to,
                                             const FirstInvalidRow& first_row, const Eigen::VectorXd& weights,
-                                            double resolution, std::int64_t& checks) {
-  CoarseToFine fractions(distance(weights, q_from, q_to), resolution);
+                                            const Spacing& resolution, std::int64_t& checks) {
+  CoarseToFine fractions(spacings(resolution, weights, q_from, q_to));
   robot::ConfigurationBatch batch(robot::CollisionChecker::kTogether, q_to.size());
   std::array<double, robot::CollisionChecker::kTogether> asked{};
   std::optional<double> fraction = fractions.next();
@@ -84,15 +84,15 @@ std::optional<double> first_invalid_by_rows(const Eigen::VectorXd& q_from, const
 
 std::optional<double> first_invalid(const Eigen::VectorXd& q_from, const Eigen::VectorXd& q_to,
                                     const robot::CollisionChecker& checker, const Eigen::VectorXd& weights,
-                                    double resolution, std::int64_t& checks) {
+                                    const Spacing& resolution, std::int64_t& checks) {
   const auto first = [&checker](const robot::ConfigurationBatch& batch) { return checker.first_colliding(batch); };
   return first_invalid_by_rows(q_from, q_to, first, weights, resolution, checks);
 }
 
-World make_world_by_rows(const FirstInvalidRow& first_row, const Eigen::VectorXd& weights, double resolution) {
-  require(static_cast<bool>(first_row) && std::isfinite(resolution) && resolution > 0.0,
-          "make_world_by_rows: a validity is needed, and a resolution that is positive and finite");
-  const auto at = [first_row, weights](double spacing) -> MotionCheck {
+World make_world_by_rows(const FirstInvalidRow& first_row, const Eigen::VectorXd& weights, const Spacing& resolution) {
+  require(static_cast<bool>(first_row), "make_world_by_rows: no validity given");
+  validate(resolution, "make_world_by_rows");
+  const auto at = [first_row, weights](const Spacing& spacing) -> MotionCheck {
     return [first_row, weights, spacing](const Eigen::VectorXd& q_from, const Eigen::VectorXd& q_to,
                                          std::int64_t& checks) {
       return first_invalid_by_rows(q_from, q_to, first_row, weights, spacing, checks);
@@ -100,7 +100,7 @@ World make_world_by_rows(const FirstInvalidRow& first_row, const Eigen::VectorXd
   };
   World world;
   world.first_invalid = at(resolution);
-  world.confirm = at(resolution / kConfirmShare);
+  world.confirm = at(resolution.divided_by(kConfirmShare));
   world.free = [first_row](const Eigen::MatrixXd& batch, std::int64_t& checks) {
     std::vector<bool> free;
     for (const auto& row : batch.rowwise()) free.push_back(!first_row(robot::ConfigurationBatch(row)));
@@ -111,34 +111,36 @@ World make_world_by_rows(const FirstInvalidRow& first_row, const Eigen::VectorXd
 }
 
 World make_world(const Validity& valid, const Eigen::VectorXd& weights, double resolution, double confirm_resolution) {
+  require(std::isfinite(confirm_resolution) && confirm_resolution >= 0.0,
+          "make_world: confirm_resolution must be >= 0 and finite");
+  World world = make_world(valid, weights, resolution);
+  world.confirm = confirm_resolution > 0.0 ? make_world(valid, weights, confirm_resolution).first_invalid : nullptr;
+  return world;
+}
+
+World make_world(const Validity& valid, const Eigen::VectorXd& weights, const Spacing& resolution) {
   require(static_cast<bool>(valid), "make_world: no validity given");
-  require(
-      std::isfinite(resolution) && resolution > 0.0 && std::isfinite(confirm_resolution) && confirm_resolution >= 0.0,
-      "make_world: resolution must be positive, confirm_resolution >= 0, both finite");
-  const auto at = [valid, weights](double spacing) -> MotionCheck {
+  validate(resolution, "make_world");
+  const auto at = [valid, weights](const Spacing& spacing) -> MotionCheck {
     return [valid, weights, spacing](const Eigen::VectorXd& q_from, const Eigen::VectorXd& q_to, std::int64_t& checks) {
       return first_invalid(q_from, q_to, valid, weights, spacing, checks);
     };
   };
   World world;
   world.first_invalid = at(resolution);
+  world.confirm = at(resolution.divided_by(kConfirmShare));
   world.free = [valid](const Eigen::MatrixXd& batch, std::int64_t& checks) {
     std::vector<bool> free;
     for (const auto& row : batch.rowwise()) free.push_back(valid(row.transpose()));
     checks += batch.rows();
     return free;
   };
-  if (confirm_resolution > 0.0) world.confirm = at(confirm_resolution);
   return world;
 }
 
-World make_world(const Validity& valid, const Eigen::VectorXd& weights, double resolution) {
-  return make_world(valid, weights, resolution, resolution / kConfirmShare);
-}
-
-World make_world(const robot::CollisionChecker& checker, const robot::RobotModel& robot, double resolution) {
-  require(std::isfinite(resolution) && resolution > 0.0, "make_world: resolution must be positive and finite");
-  const auto at = [&checker, &robot](double spacing) -> MotionCheck {
+World make_world(const robot::CollisionChecker& checker, const robot::RobotModel& robot, const Spacing& resolution) {
+  validate(resolution, "make_world");
+  const auto at = [&checker, &robot](const Spacing& spacing) -> MotionCheck {
     return [&checker, &robot, spacing](const Eigen::VectorXd& q_from, const Eigen::VectorXd& q_to,
                                        std::int64_t& checks) -> std::optional<double> {
       if (!robot.within_limits(q_to)) {  // then all between is inside them too, since q_from is
@@ -150,7 +152,8 @@ World make_world(const robot::CollisionChecker& checker, const robot::RobotModel
   };
   World world;
   world.first_invalid = at(resolution);
-  world.confirm = at(resolution / kConfirmShare);
+  world.confirm = at(resolution.divided_by(kConfirmShare));
+  world.explain = [&checker](const Eigen::VectorXd& q) { return checker.colliding_pairs(q); };
   world.free = [&checker, &robot](const Eigen::MatrixXd& batch, std::int64_t& checks) {
     std::vector<bool> free = checker.free_rows(batch);
     for (Eigen::Index row = 0; row < batch.rows(); ++row) {

@@ -15,7 +15,8 @@ namespace opponens::motion {
 SampleForest::SampleForest(const Eigen::VectorXd& weights)
     : dimension_(static_cast<int>(weights.size())),
       stride_((dimension_ + kLanes - 1) / kLanes * kLanes),
-      weights_(index(stride_), 0.0) {
+      weights_(index(stride_), 0.0),
+      filter_(weights) {
   require(dimension_ > 0, "SampleForest: no joints");
   require((weights.array() > 0.0).all() && weights.allFinite(), "SampleForest: weights must be positive and finite");
   std::copy(weights.begin(), weights.end(), weights_.begin());
@@ -28,6 +29,7 @@ int SampleForest::append(const Eigen::VectorXd& q, int parent, int root) {
   });
   q_.resize(q_.size() + index(stride_), 0.0);
   std::copy(q.begin(), q.end(), q_.end() - stride_);
+  filter_.add(q.data());
   parent_.push_back(parent);
   root_.push_back(root);
   return size() - 1;
@@ -40,8 +42,17 @@ int SampleForest::add(const Eigen::VectorXd& q, int parent) {
   return append(q, parent, root(parent));
 }
 
-Eigen::VectorXd SampleForest::vertex(int vertex) const {
-  return Eigen::Map<const Eigen::VectorXd>(q_.data() + index(vertex) * index(stride_), dimension_);
+double SampleForest::squared_distance(int vertex, const double* target) const {
+  const double* const w = weights_.data();
+  const double* const row = q_.data() + index(vertex) * index(stride_);
+  double sum[kLanes] = {0.0, 0.0, 0.0, 0.0};
+  for (int j = 0; j < stride_; j += kLanes) {
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const double difference = row[j + lane] - target[j + lane];
+      sum[lane] += w[j + lane] * difference * difference;
+    }
+  }
+  return (sum[0] + sum[2]) + (sum[1] + sum[3]);
 }
 
 SampleForest::Nearest SampleForest::nearest(const Eigen::VectorXd& q) const {
@@ -50,21 +61,14 @@ SampleForest::Nearest SampleForest::nearest(const Eigen::VectorXd& q) const {
   std::copy(q.begin(), q.end(), target.begin());
   double best = std::numeric_limits<double>::infinity();
   int nearest = 0;
-  const double* const w = weights_.data();
-  const double* const t = target.data();
-  const double* row = q_.data();
-  for (int i = 0; i < size(); ++i, row += stride_) {
-    double sum[kLanes] = {0.0, 0.0, 0.0, 0.0};
-    for (int j = 0; j < stride_; j += kLanes) {
-      for (int lane = 0; lane < kLanes; ++lane) {
-        const double difference = row[j + lane] - t[j + lane];
-        sum[lane] += w[j + lane] * difference * difference;
+  for (const int block : filter_.candidates(q.data())) {
+    const int end = std::min(size(), (block + 1) * NearestFilter::kBlock);
+    for (int i = block * NearestFilter::kBlock; i < end; ++i) {
+      const double squared = squared_distance(i, target.data());
+      if (squared < best) {
+        best = squared;
+        nearest = i;
       }
-    }
-    const double squared = (sum[0] + sum[2]) + (sum[1] + sum[3]);
-    if (squared < best) {
-      best = squared;
-      nearest = i;
     }
   }
   return {nearest, std::sqrt(best)};
@@ -97,6 +101,8 @@ int SampleForest::remove_subtree(int vertex) {
   parent_.resize(index(kept));
   root_.resize(index(kept));
   q_.resize(index(kept) * index(stride_));
+  filter_.clear();
+  for (int i = 0; i < kept; ++i) filter_.add(q_.data() + index(i) * index(stride_));
   return removed;
 }
 

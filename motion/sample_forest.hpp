@@ -6,10 +6,12 @@
 
 #include <Eigen/Core>
 
+#include "motion/nearest_filter.hpp"
+
 namespace opponens::motion {
 
 /// A graph (E, V) of Algorithm 2: one or more trees of configurations in one structure. Vertices lie one after the
-/// other in one buffer, each padded to a whole number of lanes, so that the nearest neighbour is one pass over memory.
+/// other in one buffer, each padded to a whole number of lanes.
 /// A vertex's index is larger than its parent's.
 class SampleForest {
  public:
@@ -25,15 +27,19 @@ class SampleForest {
   int root_count() const { return root_count_; }
   int parent(int vertex) const { return parent_[index(vertex)]; }  ///< -1 for a root
   int root(int vertex) const { return root_[index(vertex)]; }      ///< number of the root of its tree
-  Eigen::VectorXd vertex(int vertex) const;                        ///< [d] rad
+  /// [d] rad. Valid until the next vertex is added or removed.
+  Eigen::Map<const Eigen::VectorXd> vertex(int vertex) const {
+    return {q_.data() + index(vertex) * index(stride_), dimension_};
+  }
 
   struct Nearest {
     int vertex;
     double distance;  ///< rad, weighted metric
   };
-  /// Nearest vertex to q in the weighted metric (the lowest index among equals). A linear scan: at the sizes of these
-  /// searches (<= 1e5 vertices in 22 dimensions) it is faster than OMPL's GNAT (docs/algorithms/planner.md). The sum
-  /// has a fixed order of four lanes, so wider instructions give the same bits. Requires a non-empty forest.
+  /// Nearest vertex to q in the weighted metric (the lowest index among equals). Two linear scans: one in single
+  /// precision leaves out what is further away for certain, one in double precision decides among the rest; the sum has
+  /// a fixed order of four lanes, so the processor's instructions do not show. At the sizes of these searches (<= 1e5
+  /// vertices in 22 dimensions) faster than OMPL's GNAT (docs/algorithms/planner.md). Requires a non-empty forest.
   Nearest nearest(const Eigen::VectorXd& q) const;
 
   /// Vertices from the root of its tree to this vertex.
@@ -47,11 +53,14 @@ class SampleForest {
   static constexpr int kLanes = 4;
   static std::size_t index(int i) { return static_cast<std::size_t>(i); }
   int append(const Eigen::VectorXd& q, int parent, int root);
+  /// target: [stride], zero in the padding.
+  double squared_distance(int vertex, const double* target) const;
 
   int dimension_;
   int stride_;                   ///< dimension rounded up to whole lanes
   std::vector<double> weights_;  ///< [stride], zero in the padding
   std::vector<double> q_;        ///< [size x stride], zero in the padding
+  NearestFilter filter_;
   std::vector<int> parent_;
   std::vector<int> root_;
   int root_count_ = 0;

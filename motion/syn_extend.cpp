@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "motion/syn_extend.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 
@@ -27,6 +28,12 @@ Projection box_projection(const SynergyBox& box, const PlanningGroup& hand, cons
   };
 }
 
+double StepSettings::shortest() const {
+  double least = step;
+  for (const GroupLimit& group : groups) least = std::min(least, group.limit);
+  return least;
+}
+
 Extension syn_extend(Graph& graph, const Eigen::VectorXd& q_target, bool along_synergies, const StepSettings& settings,
                      const World& world, SearchCounts& counts) {
   ++counts.extends;
@@ -34,21 +41,25 @@ Extension syn_extend(Graph& graph, const Eigen::VectorXd& q_target, bool along_s
   const SampleForest::Nearest near = forest.nearest(q_target);  // line 1
   const Eigen::VectorXd q_near = forest.vertex(near.vertex);
   Extension extension{Advance::advanced, near.vertex, near.distance};
+  const auto share = [&](const Eigen::VectorXd& q) {
+    return largest_share(forest.weights(), q_near, q, settings.groups);
+  };
   Eigen::VectorXd q_new;
-  if (near.distance <= settings.step) {  // line 2
+  if (near.distance <= settings.step && share(q_target) <= 1.0) {  // line 2
     extension.advance = Advance::reached;
     if (near.distance == 0.0) return extension;  // the target is a vertex already
     q_new = q_target;
   } else {
     const Projection& project = graph.projections[static_cast<std::size_t>(forest.root(near.vertex))];
-    const Eigen::VectorXd q_proj = along_synergies && project ? project(q_target) : q_target;  // line 4
-    const double length = distance(forest.weights(), q_near, q_proj);
+    q_new = along_synergies && project ? project(q_target) : q_target;  // line 4: q_proj
+    const double length = distance(forest.weights(), q_near, q_new);
     if (length < settings.minimum_step) return {Advance::stalled, near.vertex, near.distance};
-    q_new = length <= settings.step ? q_proj
-                                    : Eigen::VectorXd(q_near + settings.step / length * (q_proj - q_near));  // line 5
+    const double part = std::min(settings.step / length, 1.0 / share(q_new));  // infinite without groups
+    if (part < 1.0) q_new = q_near + part * (q_new - q_near);                  // line 5
   }
-  if (world.first_invalid(q_near, q_new, counts.collision_checks)) {  // line 6
-    return {Advance::blocked, near.vertex, near.distance};            // line 9
+  if (const auto fraction = world.first_invalid(q_near, q_new, counts.collision_checks)) {  // line 6
+    counts.blocked.add(q_near, q_new, *fraction);
+    return {Advance::blocked, near.vertex, near.distance};  // line 9
   }
   extension.vertex = forest.add(q_new, near.vertex);  // line 7
   ++counts.extends_grown;

@@ -10,7 +10,9 @@
 
 #include "core/path.hpp"
 #include "core/synergies.hpp"
+#include "motion/joint_groups.hpp"
 #include "motion/sample_forest.hpp"
+#include "motion/search_counts.hpp"
 #include "motion/world.hpp"
 
 namespace opponens::motion {
@@ -33,12 +35,9 @@ struct Graph {
 struct StepSettings {
   double step = 0.4;           ///< rad, epsilon
   double minimum_step = 1e-9;  ///< rad, shorter steps towards a projection are not made
-};
-
-struct SearchCounts {
-  std::int64_t extends = 0;           ///< calls of SYNEXTEND
-  std::int64_t extends_grown = 0;     ///< those that added a vertex
-  std::int64_t collision_checks = 0;  ///< configurations evaluated
+  /// A step is also short enough that none of these groups moves more than its own epsilon.
+  std::vector<GroupLimit> groups{};
+  double shortest() const;  ///< rad, the least epsilon
 };
 
 enum class Advance {
@@ -56,10 +55,10 @@ struct Extension {
 };
 
 /// Algorithm 3, SYNEXTEND: one step of at most epsilon from the vertex nearest to q_target, towards its projection onto
-/// the synergy box of that vertex's root, or to q_target itself when that is within epsilon. Two differences from the
-/// print (docs/deviations.md): a projected step shorter than minimum_step is the empty set (line 5 would divide by
-/// zero), and along_synergies = false makes PROJECT the identity (full-space targets, the fallback of SYNCONNECT, the
-/// baseline).
+/// the synergy box of that vertex's root, or to q_target itself when that is within epsilon (and each group's). Two
+/// differences from the print (docs/deviations.md): a projected step shorter than minimum_step is the empty set (line 5
+/// would divide by zero), and along_synergies = false makes PROJECT the identity (full-space targets, the fallback of
+/// SYNCONNECT, the baseline).
 Extension syn_extend(Graph& graph, const Eigen::VectorXd& q_target, bool along_synergies, const StepSettings& settings,
                      const World& world, SearchCounts& counts);
 

@@ -2,16 +2,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "core/path.hpp"
 #include "core/synergies.hpp"
+#include "motion/plan_diagnostics.hpp"
 #include "motion/syn_extend.hpp"
 #include "motion/world.hpp"
 
@@ -19,14 +22,32 @@ namespace opponens::motion {
 
 /// A goal configuration with the synergy box of its grasp's group: the root of one tree of the goal graph.
 struct GoalRoot {
-  Eigen::VectorXd q;  ///< [d] rad
-  SynergyBox box;     ///< hand part of the group's synergies
-  int goal = 0;       ///< index reported when this root is reached
+  Eigen::VectorXd q;          ///< [d] rad
+  SynergyBox box;             ///< hand part of the group's synergies
+  int goal = 0;               ///< index reported when this root is reached
+  std::int64_t joins_at = 0;  ///< as Root::joins_at
 };
 
 enum class Variant {
-  synergy,     ///< Algorithms 2-4 (the paper's case b)
-  rrtconnect,  ///< the multi-goal RRT-Connect baseline (case a): no PROJECT, no SYNCONNECT, no fallback
+  synergy,           ///< Algorithms 2-4 (the paper's case b)
+  rrtconnect,        ///< the multi-goal RRT-Connect baseline (case a): no PROJECT, no SYNCONNECT, no fallback
+  synergy_sampling,  ///< ablation: targets projected onto the box of the tree nearest to them; steps and CONNECT
+                     ///< straight
+  pregrasp_box,  ///< ablation: Algorithms 2-4 with the start's box alone; PROJECT of the goals' trees is the identity
+};
+
+/// In the order of the enumerators.
+inline constexpr std::array<std::string_view, 4> kVariantNames{"synergy", "rrtconnect", "synergy_sampling",
+                                                               "pregrasp_box"};
+
+/// nullopt when no variant is called that.
+std::optional<Variant> variant_named(std::string_view name);
+
+/// Where a search stands.
+struct PlanProgress {
+  std::int64_t iterations = 0;
+  std::int64_t collision_checks = 0;
+  std::int64_t vertices = 0;  ///< of both graphs
 };
 
 struct PlannerSettings {
@@ -37,7 +58,11 @@ struct PlannerSettings {
   std::int64_t max_iterations = 100000;  ///< passes of Algorithm 2's loop
   std::int64_t max_checks = 0;           ///< 0: unlimited; asked once per iteration, so one iteration may pass it
   double time_limit = 0.0;               ///< s of wall clock; 0: none (searches stop on counts)
-  std::function<bool()> interrupted;     ///< polled once per iteration; empty: never
+  /// Epsilons of joint groups: a step is also short enough that no group moves more than its own.
+  std::vector<GroupLimit> group_steps{};
+  bool diagnose = false;                              ///< give diagnostics of a success too
+  std::function<bool()> interrupted;                  ///< polled once per iteration; empty: never
+  std::function<void(const PlanProgress&)> progress;  ///< told before each iteration; empty: nobody
 };
 /// Throws std::invalid_argument naming field, value and violated constraint.
 void validate(const PlannerSettings& settings);
@@ -47,6 +72,9 @@ struct Root {
   Eigen::VectorXd q;   ///< [d] rad
   Projection project;  ///< empty: the identity
   int goal = -1;       ///< index reported when this root is reached; not used for the start
+  /// Passes of the loop that are made before this goal is rooted: 0 for one that is known from the beginning, more for
+  /// one found meanwhile. It is asked for freedom from collision then. Not used for the start.
+  std::int64_t joins_at = 0;
 };
 
 /// One query with projections instead of boxes. lower, upper, weights: [d].
@@ -59,16 +87,18 @@ struct PlanQuery {
   Eigen::VectorXd weights;               ///< of the joint metric, positive
 };
 
-/// Algorithm 2, PLANNER, with every valid goal rooted from the beginning. Targets are drawn uniformly within the limits
-/// from a stream of its own: same query, world, settings and seed, same path, byte for byte (unless time_limit or
-/// interrupted end it). When World::confirm is given, it is asked of each motion of the path found; a motion that fails
-/// is deleted from its graph with everything grown from it, and the search goes on (docs/deviations.md, 14). Goals
-/// outside the limits or in collision are left out; detail says how many.
-PlanResult plan(const PlanQuery& query, const World& world, const PlannerSettings& settings, std::uint64_t seed);
+/// Algorithm 2, PLANNER, with every valid goal rooted from the beginning, or when it joins. Targets are drawn uniformly
+/// within the limits from a stream of its own: same query, world, settings and seed, same path, byte for byte (unless
+/// time_limit or interrupted end it). When World::confirm is given, it is asked of each motion of the path found; a
+/// motion that fails is deleted from its graph with everything grown from it, and the search goes on
+/// (docs/deviations.md, 14). Goals outside the limits or in collision are left out and counted; while no goal has
+/// joined yet, the start's tree grows alone. A failure comes with diagnostics, for which World::explain is asked at
+/// most 97 times after the search.
+PlanAnswer plan(const PlanQuery& query, const World& world, const PlannerSettings& settings, std::uint64_t seed);
 
 /// The same for the paper's query: the start tree follows the pre-grasp box, every goal tree its group's box. hand:
 /// index range of the hand in q. docs/algorithms/planner.md.
-PlanResult plan(const Eigen::VectorXd& start, const SynergyBox& pre_grasp, const std::vector<GoalRoot>& goals,
+PlanAnswer plan(const Eigen::VectorXd& start, const SynergyBox& pre_grasp, const std::vector<GoalRoot>& goals,
                 const std::vector<std::string>& joint_names, const PlanningGroup& hand, const Eigen::VectorXd& lower,
                 const Eigen::VectorXd& upper, const Eigen::VectorXd& weights, const World& world,
                 const PlannerSettings& settings, std::uint64_t seed);

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -26,6 +28,9 @@ struct World {
   /// first_invalid asked again, more strictly (denser, or continuous), of the motions of an answer before it is
   /// returned. Empty: an answer is not asked again.
   MotionCheck confirm;
+  /// Names of the pairs that collide at q [d]; none when it is invalid for another reason. Asked after a search, of a
+  /// bounded number of configurations, to say why it failed; never during it. Empty: a failure names no pairs.
+  std::function<std::vector<std::pair<std::string, std::string>>(const Eigen::VectorXd& q)> explain;
 };
 
 }  // namespace opponens::motion

@@ -102,6 +102,50 @@ TEST_F(OmplPlanner, SameSeedSamePathWhateverOmplsSeed) {
   EXPECT_TRUE(planner->result().path.waypoints.rows() != first.rows() || planner->result().path.waypoints != first);
 }
 
+TEST_F(OmplPlanner, PlannerDataHoldsBothGraphsAndTheWay) {
+  set_query();
+  ASSERT_TRUE(setup->solve(60.0));
+  ob::PlannerData data(setup->getSpaceInformation());
+  planner->getPlannerData(data);
+  EXPECT_EQ(data.numStartVertices(), 1U);
+  EXPECT_EQ(data.numGoalVertices(), 2U);
+  EXPECT_EQ(data.numEdges(), data.numVertices() - 3 + 1) << "trees, and where they met";
+  // Along the edges from the start every waypoint of the path is met.
+  std::vector<unsigned> reached{data.getStartIndex(0)};
+  for (std::size_t i = 0; i < reached.size(); ++i) {
+    std::vector<unsigned> next;
+    data.getEdges(reached[i], next);
+    reached.insert(reached.end(), next.begin(), next.end());
+  }
+  bool goal = false;
+  for (const unsigned i : reached) goal = goal || data.isGoalVertex(i);
+  EXPECT_TRUE(goal);
+  planner->clear();
+  EXPECT_TRUE(space->equalStates(data.getStartVertex(0).getState(), state({-1, -1, 0.2, 0}).get()))
+      << "data owns its states";
+  ob::PlannerData none(setup->getSpaceInformation());
+  planner->getPlannerData(none);
+  EXPECT_EQ(none.numVertices(), 0U);
+}
+
+TEST_F(OmplPlanner, ParametersAndProgressGoByName) {
+  set_query();
+  EXPECT_TRUE(planner->params().setParam("range", "0.25"));
+  EXPECT_DOUBLE_EQ(planner->getRange(), 0.25);
+  EXPECT_TRUE(planner->params().setParam("variant", "rrtconnect"));
+  std::string value;
+  EXPECT_TRUE(planner->params().getParam("variant", value));
+  EXPECT_EQ(value, "rrtconnect");
+  EXPECT_THROW(planner->params().setParam("variant", "fastest"), ompl::Exception);
+  EXPECT_TRUE(planner->params().setParam("max_iterations", "7"));
+  EXPECT_EQ(setup->solve(60.0), ob::PlannerStatus::TIMEOUT);
+  EXPECT_EQ(planner->result().iterations, 7);
+  const auto& progress = planner->getPlannerProgressProperties();
+  EXPECT_EQ(progress.at("iterations INTEGER")(), "7");
+  EXPECT_EQ(progress.at("collision checks INTEGER")(), std::to_string(planner->result().collision_checks));
+  EXPECT_GT(std::stoi(progress.at("states INTEGER")()), 3);
+}
+
 TEST_F(OmplPlanner, StatusesAreOmpls) {
   set_query({0, 0, 0, 0});
   EXPECT_EQ(setup->solve(1.0), ob::PlannerStatus::INVALID_START);

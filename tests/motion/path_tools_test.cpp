@@ -53,6 +53,27 @@ TEST(EdgeCheck, SpacingIsMeasuredWithTheWeights) {
   EXPECT_EQ(checks, 1);
 }
 
+TEST(EdgeCheck, GroupsMayHaveASpacingOfTheirOwn) {
+  const Validity valid = [](const Eigen::VectorXd&) { return true; };
+  const Eigen::VectorXd weights = Eigen::Vector4d(1, 1, 4, 4);
+  const auto count = [&](const Eigen::Vector4d& q, const Spacing& spacing) {
+    std::int64_t checks = 0;
+    EXPECT_FALSE(first_invalid(Eigen::Vector4d(0, 0, 0, 0), q, valid, weights, spacing, checks));
+    return checks;
+  };
+  const Spacing groups(10.0, {{0, 2, 0.5}, {2, 2, 0.25}});
+  EXPECT_EQ(count({3, 4, 0, 0}, groups), 10) << "5 rad of the first at 0.5";
+  EXPECT_EQ(count({0, 0, 3, 4}, groups), 40) << "10 rad of the second, weighted, at 0.25";
+  EXPECT_EQ(count({3, 4, 0.3, 0.4}, groups), 10) << "the largest of all decides";
+  EXPECT_EQ(count({3, 4, 3, 4}, Spacing(0.1, {{0, 2, 0.5}})), 112) << "that of all joints too: sqrt(125) / 0.1";
+  EXPECT_EQ(count({3, 4, 3, 4}, 0.1), 112);
+  const World world = make_world(valid, weights, groups);
+  std::int64_t checks = 0;
+  world.confirm(Eigen::Vector4d(0, 0, 0, 0), Eigen::Vector4d(0, 0, 3, 4), checks);
+  EXPECT_EQ(checks, 400) << "a tenth of each to confirm";
+  EXPECT_THROW(make_world(valid, weights, Spacing(1.0, {{0, 2, 0.0}})), std::invalid_argument);
+}
+
 TEST(EdgeCheck, FractionIsThatOfTheInvalidConfiguration) {
   std::int64_t checks = 0;
   const auto at = [](double x) { return Eigen::VectorXd::Constant(1, x); };

@@ -14,6 +14,7 @@
 #include "motion/goal_configurations.hpp"
 #include "motion/grown_scene.hpp"
 #include "motion/joint_metric.hpp"
+#include "motion/pair_depth.hpp"
 #include "motion/shortcut.hpp"
 #include "motion/syn_planner.hpp"
 #include "motion/timing.hpp"
@@ -261,8 +262,37 @@ TEST(GrownScene, KeepsTheMarginFromEveryShapeButTheException) {
   EXPECT_NEAR(mesh->vertices.colwise().norm().maxCoeff(), 0.04, 1e-12) << "the original is left alone";
 }
 
+TEST_F(RobotWorld, APairIsAsDeepAsItOverlaps) {
+  // A box into which the palm's link reaches by a known depth: its top side is moved through the link's lowest point.
+  const Eigen::VectorXd q = start();
+  const std::string link = robot.links()[static_cast<std::size_t>(robot.palm())].name;
+  const auto& geometry = robot.links()[static_cast<std::size_t>(robot.palm())].collision;
+  const Eigen::Isometry3d X_WL = scene.X_WR * robot.link_poses(q)[static_cast<std::size_t>(robot.palm())];
+  double lowest = INFINITY;
+  for (const auto& part : geometry) {
+    for (const auto& p : robot::surface_samples(part, 0.001)) lowest = std::min(lowest, (X_WL * p).z());
+  }
+  for (const double depth : {0.002, 0.01}) {
+    robot::Scene under = scene;
+    under.bodies.clear();
+    robot::SceneBody box;
+    box.name = "slab";
+    box.X_WB.translation() = Eigen::Vector3d(X_WL.translation().x(), X_WL.translation().y(), lowest + depth - 0.5);
+    box.geometry.push_back({});
+    box.geometry.back().shape = robot::Box{Eigen::Vector3d(1, 1, 1)};
+    under.bodies.push_back(box);
+    EXPECT_NEAR(pair_depth(robot, under, q, {link, "slab"}), depth, 0.0005);
+    EXPECT_NEAR(pair_depth(robot, under, q, {"slab", link}), depth, 0.0005) << "whichever is named first";
+    box.X_WB.translation().z() -= 0.1;
+    under.bodies = {box};
+    EXPECT_EQ(pair_depth(robot, under, q, {link, "slab"}), 0.0);
+  }
+}
+
 class RobotPlan : public RobotWorld, public ::testing::WithParamInterface<Variant> {};
-INSTANTIATE_TEST_SUITE_P(Variants, RobotPlan, ::testing::Values(Variant::synergy, Variant::rrtconnect));
+INSTANTIATE_TEST_SUITE_P(Variants, RobotPlan,
+                         ::testing::Values(Variant::synergy, Variant::rrtconnect, Variant::synergy_sampling,
+                                           Variant::pregrasp_box));
 
 TEST_P(RobotPlan, ReachesTheShelf) {
   const auto grasp = reachable();

@@ -59,10 +59,12 @@ void expect_right(const ToyWorld& toy, const PlanResult& result, const std::vect
   }
 }
 
-class BothVariants : public ::testing::TestWithParam<Variant> {};
-INSTANTIATE_TEST_SUITE_P(Variants, BothVariants, ::testing::Values(Variant::synergy, Variant::rrtconnect));
+class EveryVariant : public ::testing::TestWithParam<Variant> {};
+INSTANTIATE_TEST_SUITE_P(Variants, EveryVariant,
+                         ::testing::Values(Variant::synergy, Variant::rrtconnect, Variant::synergy_sampling,
+                                           Variant::pregrasp_box));
 
-TEST_P(BothVariants, SolveANarrowPassage) {
+TEST_P(EveryVariant, SolveANarrowPassage) {
   ToyWorld toy;
   toy.add_wall(0.5, 0.7);
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
@@ -72,7 +74,7 @@ TEST_P(BothVariants, SolveANarrowPassage) {
   }
 }
 
-TEST_P(BothVariants, SolveRandomWorlds) {
+TEST_P(EveryVariant, SolveRandomWorlds) {
   Rng rng = stream(3, "test/worlds");
   for (int trial = 0; trial < 20; ++trial) {
     SCOPED_TRACE(trial);
@@ -91,7 +93,7 @@ TEST_P(BothVariants, SolveRandomWorlds) {
   }
 }
 
-TEST_P(BothVariants, SameSeedSameBytes) {
+TEST_P(EveryVariant, SameSeedSameBytes) {
   ToyWorld toy;
   toy.add_wall(0.5, 0.7);
   const PlanResult a = plan_toy(toy, kStart, two_goals(), variant(GetParam()), 5);
@@ -106,7 +108,7 @@ TEST_P(BothVariants, SameSeedSameBytes) {
   EXPECT_TRUE(a.path.waypoints.rows() != other.path.waypoints.rows() || a.path.waypoints != other.path.waypoints);
 }
 
-TEST_P(BothVariants, CountersAreWhatTheWorldSaw) {
+TEST_P(EveryVariant, CountersAreWhatTheWorldSaw) {
   ToyWorld toy;
   toy.add_wall(0.5, 0.7);
   std::int64_t evaluated = 0;
@@ -150,6 +152,42 @@ TEST(SynPlanner, FollowsTheBoxesWhereTheBaselineDoesNot) {
     return sum / 20.0;
   };
   EXPECT_LT(off_boxes(Variant::synergy), 0.1 * off_boxes(Variant::rrtconnect));
+}
+
+TEST(SynPlanner, AblationsFollowWhatTheySay) {
+  // Empty world, far boxes (h2 = 0 and 0.9): which tree leaves its box? A path's first waypoints are the start's tree.
+  ToyWorld toy;
+  toy.add_wall(0.5, 0.7);
+  const std::vector<GoalRoot> goals{{Eigen::Vector4d(1, -1, -0.3, 0.9), line_box(0.9), 0}};
+  const auto share_on_box = [&](Variant which, double h2) {
+    int on = 0;
+    int all = 0;
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      PlannerSettings settings = variant(which);
+      settings.full_space_probability = 0.0;
+      const PlanResult result = plan_toy(toy, kStart, goals, settings, seed);
+      EXPECT_EQ(result.status, PlanStatus::solved);
+      for (const auto& q : result.path.waypoints.rowwise()) on += std::abs(q[3] - h2) < 1e-9 ? 1 : 0;
+      all += static_cast<int>(result.path.waypoints.rows());
+    }
+    return static_cast<double>(on) / all;
+  };
+  // Half of the waypoints or less belong to either tree; the ends always lie on their boxes.
+  EXPECT_GT(share_on_box(Variant::synergy, 0.0), 0.2);
+  EXPECT_GT(share_on_box(Variant::synergy, 0.9), 0.2);
+  EXPECT_GT(share_on_box(Variant::pregrasp_box, 0.0), 0.2);
+  EXPECT_LT(share_on_box(Variant::pregrasp_box, 0.9), 0.15);
+  for (const double h2 : {0.0, 0.9}) {
+    EXPECT_GT(share_on_box(Variant::synergy_sampling, h2), share_on_box(Variant::rrtconnect, h2)) << h2;
+  }
+}
+
+TEST(SynPlanner, VariantsAreNamed) {
+  for (std::size_t i = 0; i < kVariantNames.size(); ++i) {
+    EXPECT_EQ(variant_named(kVariantNames[i]), static_cast<Variant>(i));
+  }
+  EXPECT_EQ(variant_named("pregrasp_box"), Variant::pregrasp_box);
+  EXPECT_FALSE(variant_named("Synergy"));
 }
 
 TEST(SynPlanner, FullSpaceTargetsHelpWhereTheBoxesHinder) {

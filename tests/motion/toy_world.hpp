@@ -53,7 +53,7 @@ inline SynergyBox line_box(double h2) {
   return box;
 }
 
-inline PlanResult plan_toy(const ToyWorld& toy, const Eigen::Vector4d& start, const std::vector<GoalRoot>& goals,
+inline PlanAnswer plan_toy(const ToyWorld& toy, const Eigen::Vector4d& start, const std::vector<GoalRoot>& goals,
                            const PlannerSettings& settings, std::uint64_t seed) {
   return plan(start, line_box(0.0), goals, toy.names, toy.hand, toy.lower, toy.upper, toy.weights, toy.world(),
               settings, seed);
