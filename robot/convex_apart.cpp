@@ -187,7 +187,8 @@ GapBounds gap_by_steps(const ConvexSolid& a, const ConvexSolid& b, const Eigen::
   const double rounding = rounding_of(a) + rounding_of(b);
   const auto support = [&](const Vector3d& n, bool thorough) -> Vector3d {
     const Vector3d turned = -(X_AB.linear().transpose() * n);
-    return std::visit(Support{n, thorough}, a.form) - X_AB * std::visit(Support{turned, thorough}, b.form);
+    return std::visit(Support{n, thorough}, a.form) - X_AB.linear() * std::visit(Support{turned, thorough}, b.form) -
+           X_AB.translation();
   };
   Vector3d v = away.isZero(kCoincident) ? Vector3d(a.center - X_AB * b.center) : away;
   if (v.isZero(kCoincident)) v = Vector3d::UnitX();

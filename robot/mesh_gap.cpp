@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <vector>
+#include <memory>
+#include <variant>
 
 #include "robot/bounding_volume_tree.hpp"
 
@@ -17,9 +17,17 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kExactWithin = 1e-6;   ///< m
 constexpr std::size_t kPending = 256;  ///< entries of a descent; wider trees end it with the whole meshes
+
+Vector3d moved_point(const Isometry3d& X, const Vector3d& p) { return X.linear() * p + X.translation(); }
+
+Isometry3d relative(const Isometry3d& X_WA, const Isometry3d& X_WB) {
+  Isometry3d X_AB = Isometry3d::Identity();
+  X_AB.linear() = X_WA.linear().transpose() * X_WB.linear();
+  X_AB.translation() = X_WA.linear().transpose() * (X_WB.translation() - X_WA.translation());
+  return X_AB;
+}
 
 bool has_triangles(const CollisionShape& shape) {
   return std::holds_alternative<std::shared_ptr<const TriangleMesh>>(shape.shape());
@@ -37,19 +45,10 @@ struct Cover {
   ConvexSolid piece(int leaf) const { return {&hulls[static_cast<std::size_t>(leaf)], node(leaf).center}; }
 };
 
-struct LeafPair {
-  int a;
-  int b;
-};
-
-/// What a descent found: the least lower bound, and the pairs of leaves nearer than `enough`.
-struct Near {
-  double least = kInfinite;
-  std::vector<LeafPair>& leaves;
-  bool complete = true;
-};
-
-void descend(const Cover& a, const Cover& b, const Isometry3d& X_AB, double needed, double enough, Near& near) {
+/// Calls open(leaf_a, leaf_b) for all leaves whose balls (of a primitive: box) come nearer than `enough`, until it
+/// returns true; whether it did. Also true where a tree is too wide.
+template <typename Open>
+bool any_near(const Cover& a, const Cover& b, const Isometry3d& X_AB, double enough, const Open& open) {
   std::array<LeafPair, kPending> stack;  // NOLINT: filled before it is read
   std::size_t size = 0;
   stack[size++] = {0, 0};
@@ -58,46 +57,93 @@ void descend(const Cover& a, const Cover& b, const Isometry3d& X_AB, double need
     const SphereTree::Node& node_a = a.node(entry.a);
     const SphereTree::Node& node_b = b.node(entry.b);
     const double reach = node_a.radius + node_b.radius + enough;
-    if ((node_a.center - X_AB * node_b.center).squaredNorm() > reach * reach) continue;
+    if ((node_a.center - moved_point(X_AB, node_b.center)).squaredNorm() > reach * reach) continue;
     const bool divide_a = node_b.children == 0 || (node_a.children > 0 && node_a.radius >= node_b.radius);
     const SphereTree::Node& divided = divide_a ? node_a : node_b;
     if (divided.children == 0) {
-      if (!a.has_piece(entry.a) || !b.has_piece(entry.b)) continue;
-      Vector3d away = Vector3d::Zero();
-      const GapBounds gap = convex_gap(a.piece(entry.a), b.piece(entry.b), X_AB, needed, enough, away);
-      if (gap.lower >= enough) continue;
-      near.least = std::min(near.least, gap.lower);
-      near.leaves.push_back(entry);
+      if (a.has_piece(entry.a) && b.has_piece(entry.b) && open(entry)) return true;
       continue;
     }
-    if (size + static_cast<std::size_t>(divided.children) > kPending) {
-      near.complete = false;
-      return;
-    }
+    if (size + static_cast<std::size_t>(divided.children) > kPending) return true;
     for (int child = divided.first_child; child < divided.first_child + divided.children; ++child) {
       stack[size++] = divide_a ? LeafPair{child, entry.b} : LeafPair{entry.a, child};
     }
   }
+  return false;
 }
 
-GapBounds two_mesh_gap(const CollisionShape& A, const Isometry3d& X_WA, const CollisionShape& B, const Isometry3d& X_WB,
-                       double needed, double enough) {
-  thread_local std::vector<LeafPair> leaves;
-  leaves.clear();
-  Near near{kInfinite, leaves};
-  descend(Cover(A), Cover(B), X_WA.inverse(Eigen::Isometry) * X_WB, needed, enough, near);
-  if (near.complete && leaves.empty()) return {enough, kInfinite};
-  if (near.complete && near.least > needed) return {near.least, kInfinite};
-  double distance = enough;
-  if (near.complete) {
-    for (const LeafPair& pair : leaves) {
-      distance = std::min(distance, leaves_distance(A, X_WA, pair.a, B, X_WB, pair.b, distance));
-      if (distance < needed) break;
+template <typename Open>
+bool any_near(const Cover& mesh, const CollisionShape& primitive, const Isometry3d& X_MP, double enough,
+              const Open& open) {
+  const OrientedBox box{moved_point(X_MP, primitive.center()), X_MP.linear(), primitive.half_extents()};
+  std::array<int, kPending> stack;  // NOLINT: filled before it is read
+  std::size_t size = 0;
+  stack[size++] = 0;
+  while (size > 0) {
+    const int index = stack[--size];
+    const SphereTree::Node& node = mesh.node(index);
+    if (point_box_distance(node.center, box) > node.radius + enough) continue;
+    if (node.children == 0) {
+      if (mesh.has_piece(index) && open(LeafPair{index, 0})) return true;
+      continue;
     }
-  } else {
-    distance = leaves_distance(A, X_WA, 0, B, X_WB, 0, distance);  // the first node's ball holds the whole mesh
+    if (size + static_cast<std::size_t>(node.children) > kPending) return true;
+    for (int child = 0; child < node.children; ++child) stack[size++] = node.first_child + child;
   }
-  return {std::max(0.0, distance < enough ? distance - kExactWithin : enough), distance < enough ? distance : kInfinite};
+  return false;
+}
+
+bool solids_keep(const ConvexSolid& a, const ConvexSolid& b, const Isometry3d& X_AB, double enough) {
+  Vector3d away = Vector3d::Zero();
+  return convex_gap(a, b, X_AB, enough, enough, away).lower >= enough;
+}
+
+/// keep(leaves): whether two pieces do.
+template <typename AnyNear, typename Keep>
+bool all_keep(const AnyNear& any, const Keep& keep, LeafPair& last) {
+  if (last.a >= 0 && !keep(last)) return false;
+  return !any([&](const LeafPair& leaves) {
+    if (keep(leaves)) return false;
+    last = leaves;
+    return true;
+  });
+}
+
+bool mesh_primitive_keep(const CollisionShape& mesh, const CollisionShape& primitive, const Isometry3d& X_MP,
+                         double enough, LeafPair& last) {
+  const Cover cover(mesh);
+  const ConvexSolid solid = convex_solid(primitive);
+  return all_keep([&](const auto& open) { return any_near(cover, primitive, X_MP, enough, open); },
+                  [&](const LeafPair& leaves) { return solids_keep(cover.piece(leaves.a), solid, X_MP, enough); },
+                  last);
+}
+
+bool two_meshes_keep(const CollisionShape& A, const CollisionShape& B, const Isometry3d& X_AB, double enough,
+                     LeafPair& last) {
+  const Cover a(A);
+  const Cover b(B);
+  return all_keep([&](const auto& open) { return any_near(a, b, X_AB, enough, open); },
+                  [&](const LeafPair& leaves) {
+                    return solids_keep(a.piece(leaves.a), b.piece(leaves.b), X_AB, enough);
+                  },
+                  last);
+}
+
+double two_meshes_distance(const CollisionShape& A, const Isometry3d& X_WA, const CollisionShape& B,
+                           const Isometry3d& X_WB, double needed, double enough) {
+  const Cover a(A);
+  const Cover b(B);
+  const Isometry3d X_AB = relative(X_WA, X_WB);
+  double distance = enough;
+  const bool ended = any_near(a, b, X_AB, enough, [&](const LeafPair& leaves) {
+    if (!solids_keep(a.piece(leaves.a), b.piece(leaves.b), X_AB, distance)) {
+      distance = leaves_distance(A, X_WA, leaves.a, B, X_WB, leaves.b, distance);
+    }
+    return distance < needed;
+  });
+  // A tree too wide for the descent: its first node's ball holds the whole mesh.
+  if (ended && distance >= needed) distance = leaves_distance(A, X_WA, 0, B, X_WB, 0, distance);
+  return distance < enough ? std::max(0.0, distance - kExactWithin) : enough;
 }
 
 /// Distance between the triangles of a mesh and a primitive, or `limit` when that is less; within 1e-6 m below it.
@@ -123,47 +169,20 @@ double triangles_distance(const CollisionShape& mesh, const CollisionShape& prim
       limit);
 }
 
-GapBounds mesh_primitive_gap_bounds(const CollisionShape& mesh, const CollisionShape& primitive, const Isometry3d& X_MP,
-                                    double needed, double enough) {
-  const Cover cover(mesh);
-  const ConvexSolid solid = convex_solid(primitive);
-  const Isometry3d X_PM = X_MP.inverse(Eigen::Isometry);
-  const OrientedBox box{primitive.center(), Eigen::Matrix3d::Identity(), primitive.half_extents()};
-  double least = kInfinite;
-  std::array<int, kPending> stack;  // NOLINT: filled before it is read
-  std::size_t size = 0;
-  stack[size++] = 0;
-  while (size > 0 && least > needed) {
-    const int index = stack[--size];
-    const SphereTree::Node& node = cover.node(index);
-    if (point_box_distance(X_PM * node.center, box) > node.radius + enough) continue;
-    if (node.children == 0) {
-      if (!cover.has_piece(index)) continue;
-      Vector3d away = Vector3d::Zero();
-      const GapBounds gap = convex_gap(cover.piece(index), solid, X_MP, needed, enough, away);
-      if (gap.lower < enough) least = std::min(least, gap.lower);
-      continue;
-    }
-    if (size + static_cast<std::size_t>(node.children) > kPending) {
-      least = 0.0;
-      break;
-    }
-    for (int child = 0; child < node.children; ++child) stack[size++] = node.first_child + child;
-  }
-  if (least == kInfinite) return {enough, kInfinite};
-  if (least > needed) return {least, kInfinite};
-  const double distance = triangles_distance(mesh, primitive, X_MP, enough);
-  return {distance, distance < enough ? distance + kExactWithin : kInfinite};
-}
-
 }  // namespace
 
-GapBounds mesh_gap(const CollisionShape& a, const Isometry3d& X_WA, const CollisionShape& b, const Isometry3d& X_WB,
-                   double needed, double enough) {
-  if (has_triangles(a) && has_triangles(b)) return two_mesh_gap(a, X_WA, b, X_WB, needed, enough);
-  return has_triangles(a)
-             ? mesh_primitive_gap_bounds(a, b, X_WA.inverse(Eigen::Isometry) * X_WB, needed, enough)
-             : mesh_primitive_gap_bounds(b, a, X_WB.inverse(Eigen::Isometry) * X_WA, needed, enough);
+bool pieces_keep(const CollisionShape& a, const Isometry3d& X_WA, const CollisionShape& b, const Isometry3d& X_WB,
+                 double enough, LeafPair& last) {
+  if (!has_triangles(b)) return mesh_primitive_keep(a, b, relative(X_WA, X_WB), enough, last);
+  if (!has_triangles(a)) return mesh_primitive_keep(b, a, relative(X_WB, X_WA), enough, last);
+  return two_meshes_keep(a, b, relative(X_WA, X_WB), enough, last);
+}
+
+double mesh_distance(const CollisionShape& a, const Isometry3d& X_WA, const CollisionShape& b, const Isometry3d& X_WB,
+                     double needed, double enough) {
+  if (!has_triangles(b)) return triangles_distance(a, b, relative(X_WA, X_WB), enough);
+  if (!has_triangles(a)) return triangles_distance(b, a, relative(X_WB, X_WA), enough);
+  return two_meshes_distance(a, X_WA, b, X_WB, needed, enough);
 }
 
 }  // namespace opponens::robot

@@ -10,11 +10,20 @@
 
 namespace opponens::robot {
 
-/// Bounds of the distance of two surfaces, m, as far as it takes to tell that it is at least `enough` (upper is then
-/// infinite) or below `needed` (needed <= enough): by the convex pieces that contain the meshes' surfaces (MeshCover),
-/// and where some of these come nearer than `needed` by the triangles, which gives the distance within 1e-6 m. Where
-/// the pieces say something in between, they say it. One solid inside the other is not looked for.
-GapBounds mesh_gap(const CollisionShape& a, const Eigen::Isometry3d& X_WA, const CollisionShape& b,
-                   const Eigen::Isometry3d& X_WB, double needed, double enough);
+/// Leaves of two covers; -1: none. Of a primitive 0.
+struct LeafPair {
+  int a = -1;
+  int b = -1;
+};
+
+/// Whether the surfaces are at least `enough` apart (m), by the convex pieces that contain them (MeshCover). One solid
+/// inside the other is not looked for. last: a pair of pieces to try first; set to one that is nearer.
+bool pieces_keep(const CollisionShape& a, const Eigen::Isometry3d& X_WA, const CollisionShape& b,
+                 const Eigen::Isometry3d& X_WB, double enough, LeafPair& last);
+
+/// The distance of the surfaces, m, or `enough` when that is less: of the triangles in pieces nearer than that. Within
+/// 1e-6 m below it. Not looked for further where it is below `needed`.
+double mesh_distance(const CollisionShape& a, const Eigen::Isometry3d& X_WA, const CollisionShape& b,
+                     const Eigen::Isometry3d& X_WB, double needed, double enough);
 
 }  // namespace opponens::robot
