@@ -4,14 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "core/require.hpp"
 
 namespace opponens::motion {
 namespace {
 
-constexpr double kShareAtStart = 0.9;  ///< of a distance at the start, which a motion along a surface cannot keep wholly
+constexpr double kShareAtStart =
+    0.9;  ///< of a distance at the start, which a motion along a surface cannot keep wholly
 
 /// A motion's bounds are found anew at every so many halvings: they come down to the travel itself as motions get
 /// short, and the bounds of a motion hold for its parts by their share.
@@ -73,15 +73,16 @@ ContinuousCheck ContinuousCheck::starting_at(const Eigen::VectorXd& q) const {
   return result;
 }
 
-ContinuousCheck ContinuousCheck::without(const std::vector<robot::BodyPair>& touching) const {
+ContinuousCheck ContinuousCheck::without_contacts(const robot::CollisionChecker& closing,
+                                                  const std::set<std::string>& links) const {
   ContinuousCheck result = *this;
-  std::set<robot::BodyPair> names;
-  for (const auto& [a, b] : touching) {
-    names.emplace(a, b);
-    names.emplace(b, a);
-  }
-  std::erase_if(result.watched_,
-                [&](const Watched& pair) { return names.contains(gaps_.names(gaps_.pairs()[pair.index])); });
+  const robot::PairGaps kept(closing);
+  std::set<robot::BodyPair> checked;
+  for (const robot::PairGaps::Pair& pair : kept.pairs()) checked.insert(kept.names(pair));
+  std::erase_if(result.watched_, [&](const Watched& pair) {
+    const robot::BodyPair names = gaps_.names(gaps_.pairs()[pair.index]);
+    return (links.contains(names.first) || links.contains(names.second)) && !checked.contains(names);
+  });
   return result;
 }
 

@@ -4,6 +4,8 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -19,7 +21,7 @@ struct ClearanceSettings {
   /// m, that every pair keeps. Above the 0.5 mm that `verify` asks for by default by more than what its polyhedra
   /// around round shapes take away (0.02 mm each).
   double clearance = 0.0006;
-  double resolution = 1e-5;    ///< m, of relative motion: parts of a motion below it are not divided any more
+  double resolution = 1e-5;   ///< m, of relative motion: parts of a motion below it are not divided any more
   double bound_factor = 1.0;  ///< on robot::MotionBound; below 1 nothing is proven: for tests
 };
 
@@ -38,8 +40,9 @@ class ContinuousCheck {
   /// The same check, but a pair that is nearer than the clearance at q ([d] rad; a start that is given, not chosen) has
   /// to keep only 0.9 of what it has there: it may slide along and leave, and all others keep the clearance.
   ContinuousCheck starting_at(const Eigen::VectorXd& q) const;
-  /// The same check without some pairs (of names: links, or a link and a scene body).
-  ContinuousCheck without(const std::vector<robot::BodyPair>& touching) const;
+  /// The same check without the pairs of these links that another checker of this robot and scene leaves out, as the
+  /// contacts of a grasp with its object.
+  ContinuousCheck without_contacts(const robot::CollisionChecker& closing, const std::set<std::string>& links) const;
 
   /// A place of the motion q_from to q_to (both inclusive), as a fraction in [0, 1], where the clearance is not kept,
   /// or not proven at the resolution; nullopt when it is kept throughout. That nothing is inside something else is the

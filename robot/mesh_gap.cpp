@@ -17,7 +17,7 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-constexpr double kExactWithin = 1e-6;   ///< m
+constexpr double kExactWithin = 1e-6;  ///< m
 constexpr std::size_t kPending = 256;  ///< entries of a descent; wider trees end it with the whole meshes
 
 Vector3d moved_point(const Isometry3d& X, const Vector3d& p) { return X.linear() * p + X.translation(); }
@@ -122,11 +122,9 @@ bool two_meshes_keep(const CollisionShape& A, const CollisionShape& B, const Iso
                      LeafPair& last) {
   const Cover a(A);
   const Cover b(B);
-  return all_keep([&](const auto& open) { return any_near(a, b, X_AB, enough, open); },
-                  [&](const LeafPair& leaves) {
-                    return solids_keep(a.piece(leaves.a), b.piece(leaves.b), X_AB, enough);
-                  },
-                  last);
+  return all_keep(
+      [&](const auto& open) { return any_near(a, b, X_AB, enough, open); },
+      [&](const LeafPair& leaves) { return solids_keep(a.piece(leaves.a), b.piece(leaves.b), X_AB, enough); }, last);
 }
 
 double two_meshes_distance(const CollisionShape& A, const Isometry3d& X_WA, const CollisionShape& B,

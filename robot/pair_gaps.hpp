@@ -41,7 +41,7 @@ class PairGaps {
     std::vector<Eigen::Isometry3d> X_RG_;  ///< [parts]
     std::vector<std::uint64_t> known_;     ///< [parts] the number of the placement when X_RG was made
     std::uint64_t number_ = 0;
-    std::vector<Eigen::Vector3d> away_;         ///< [pairs] direction that kept its hulls apart
+    std::vector<Eigen::Vector3d> away_;        ///< [pairs] direction that kept its hulls apart
     std::vector<std::pair<int, int>> pieces_;  ///< [pairs] pieces that were too near
   };
   /// Forgets what was found of pairs: answers then depend on nothing asked before.

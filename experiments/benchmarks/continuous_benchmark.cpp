@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The opponens authors
 // SPDX-License-Identifier: BSD-3-Clause
-// What checking a path costs, by samples at the planner's spacing, by the planner's continuous check, and by verify: the
-// free part of recorded paths (shelf_paths.json, laboratory_shelf_paths.json), one segment after the other. One round
-// checks all paths of a file; counters are per path.
+// What checking a path costs, by samples at the planner's spacing, by the planner's continuous check, and by verify:
+// the free part of recorded paths (shelf_paths.json, laboratory_shelf_paths.json), one segment after the other. One
+// round checks all paths of a file; counters are per path.
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -64,21 +64,23 @@ void with_case(benchmark::State& state, const Case& chosen, const Use& use) {
 }
 
 void samples(benchmark::State& state, const Case& chosen, double resolution) {
-  with_case(state, chosen, [&](const Setting& setting, const Recorded& recorded, const robot::CollisionChecker& checker) {
-    const motion::World world = motion::make_world(checker, setting.robot, resolution);
-    check_paths(state, recorded, [&](const Eigen::VectorXd& from, const Eigen::VectorXd& to, std::int64_t& count) {
-      return !world.first_invalid(from, to, count);
-    });
-  });
+  with_case(
+      state, chosen, [&](const Setting& setting, const Recorded& recorded, const robot::CollisionChecker& checker) {
+        const motion::World world = motion::make_world(checker, setting.robot, resolution);
+        check_paths(state, recorded, [&](const Eigen::VectorXd& from, const Eigen::VectorXd& to, std::int64_t& count) {
+          return !world.first_invalid(from, to, count);
+        });
+      });
 }
 
 void continuous(benchmark::State& state, const Case& chosen) {
-  with_case(state, chosen, [&](const Setting& setting, const Recorded& recorded, const robot::CollisionChecker& checker) {
-    const motion::ContinuousCheck check(checker, setting.robot);
-    check_paths(state, recorded, [&](const Eigen::VectorXd& from, const Eigen::VectorXd& to, std::int64_t& count) {
-      return !check.first_near(from, to, count);
-    });
-  });
+  with_case(
+      state, chosen, [&](const Setting& setting, const Recorded& recorded, const robot::CollisionChecker& checker) {
+        const motion::ContinuousCheck check(checker, setting.robot);
+        check_paths(state, recorded, [&](const Eigen::VectorXd& from, const Eigen::VectorXd& to, std::int64_t& count) {
+          return !check.first_near(from, to, count);
+        });
+      });
 }
 
 void verified(benchmark::State& state, const Case& chosen) {

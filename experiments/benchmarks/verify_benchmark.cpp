@@ -31,8 +31,7 @@ void build(benchmark::State& state, Setting (*make)(), bool shared) {
 void check(benchmark::State& state, Setting (*make)(), const char* file, bool shared) {
   if (absent(state, shared)) return;
   const Setting setting = make();
-  const Recorded recorded =
-      read_paths(file, setting.robot, "bottle");
+  const Recorded recorded = read_paths(file, setting.robot, "bottle");
   verify::PathChecker checker(setting.robot, setting.scene);
   double configurations = 0.0;
   double distances = 0.0;
