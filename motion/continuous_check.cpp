@@ -17,6 +17,19 @@ constexpr double kShareAtStart =
 /// short, and the bounds of a motion hold for its parts by their share.
 constexpr int kBoundEvery = 2;
 
+constexpr double kSlice = 0.0009;  ///< m; limits that close are told apart exactly by PairGaps
+
+/// The distance of a pair, or `limit` when that is less, m.
+double distance_below(const robot::PairGaps& gaps, std::size_t pair, robot::PairGaps::Places& places, double limit) {
+  while (limit > 0.0) {
+    const double needed = std::max(0.0, limit - kSlice);
+    const robot::GapBounds gap = gaps.gap(pair, places, needed, limit);
+    if (gap.lower >= limit || gap.upper >= needed) return std::min(gap.lower, limit);
+    limit = needed;
+  }
+  return 0.0;
+}
+
 }  // namespace
 
 /// Room for one motion, to be used again and again.
@@ -65,7 +78,7 @@ ContinuousCheck ContinuousCheck::starting_at(const Eigen::VectorXd& q) const {
   for (Watched& pair : result.watched_) {
     if (gaps_.ball_gap(gaps_.pairs()[pair.index], work.places) >= pair.needed / kShareAtStart) continue;
     const double enough = pair.needed / kShareAtStart;
-    const double lower = gaps_.gap(pair.index, work.places, enough, enough).lower;
+    const double lower = distance_below(gaps_, pair.index, work.places, enough);
     if (lower >= enough) continue;
     if (lower < pair.needed) ++result.nearer_;
     pair.needed = kShareAtStart * lower;
