@@ -24,7 +24,7 @@ constexpr std::string_view kObstacle = "collision with the surroundings";
 constexpr std::string_view kRoomAdvice = "make room around the object";
 
 /// Reasons without a named pair of bodies; the first prefix that fits.
-constexpr std::array<Meaning, 19> kMeanings{{
+constexpr std::array<Meaning, 20> kMeanings{{
     {"no inverse kinematics", kReach, kReachAdvice},
     {"outside the joint limits: ", "a hand joint beyond its limit", "check the file's joint names and units"},
     {"outside the joint limits", kReach, kReachAdvice},
@@ -46,6 +46,7 @@ constexpr std::array<Meaning, 19> kMeanings{{
      "try more trials, --free-joints, or a larger --mu if the surfaces allow it"},
     {"epsilon did not converge", "not force closure", ""},
     {"closing segment too deep in the object", kGrip, kGripAdvice},
+    {"closing segment nearer to something than the clearance", kObstacle, kRoomAdvice},
 }};
 
 /// Whether the pair "a-b" names this body; names may have dashes of their own.

@@ -183,8 +183,10 @@ Json advise(const NamedWorld& world, const Planning& planning, const Console& co
     warnings.push_back(std::to_string(count) + " of " + std::to_string(count + planning.query().goals.size()) +
                        " goals left out: their closing segment is not valid at this resolution");
   }
-  if (!planning.keeps_margin()) {
-    warnings.emplace_back("the start is in collision or nearer than 0.75 mm to the scene: no margin is kept from it");
+  if (!planning.keeps_clearance()) {
+    warnings.emplace_back(
+        "at the start something is nearer than the clearance of 0.6 mm: such pairs keep only nine tenths of what they "
+        "have there");
   }
   for (const auto& warning : warnings) console.advise(warning);
   return warnings;

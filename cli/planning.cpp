@@ -27,15 +27,21 @@ LikenessReference grasp_phase_reference(const SynergyGroup& group) {
   return {"grasp phase of group " + group.name, group.box.scale.asDiagonal() * scaled * group.box.scale.asDiagonal()};
 }
 
-/// Paths keep this distance from the scene, so that they do not touch it between the samples they are checked at: at
-/// 0.002 rad the hand moves 2 mm, and a fingertip of 6 mm radius that passes an edge comes 0.08 mm nearer between two
-/// samples. Half again as much as verify asks for by default, whose proof holds between the samples. No margin where
-/// the start is nearer than that to something.
-FreeSpace free_space(const Eigen::VectorXd& start, const NamedWorld& world) {
-  constexpr double kMargin = 0.00075;  // m
-  robot::CollisionChecker grown(world.robot, motion::grown_scene(world.scene, kMargin));
-  if (grown.free(start)) return {kMargin, std::move(grown)};
-  return {0.0, robot::CollisionChecker(world.robot, world.scene)};
+/// m. Paths keep a clearance that is proven for all of their motion (motion::ContinuousCheck). The search itself asks
+/// at samples, so it asks of bodies this much larger, a little more than the clearance: then few answers fail.
+constexpr double kGrowth = 0.00075;
+
+/// Bodies that the start is nearer to than that are left as they are.
+std::set<std::string> near_start(const Eigen::VectorXd& start, const NamedWorld& world) {
+  std::set<std::string> bodies;
+  const robot::CollisionChecker grown(world.robot, motion::grown_scene(world.scene, kGrowth));
+  for (const robot::BodyPair& pair : grown.colliding_pairs(start)) bodies.insert(pair.second);
+  return bodies;
+}
+
+std::set<std::string> with(std::set<std::string> names, const std::string& name) {
+  names.insert(name);
+  return names;
 }
 
 std::vector<motion::GroupLimit> limits_of(const robot::RobotModel& robot, const GroupLengths& own) {
@@ -93,12 +99,17 @@ Planning::Planning(const PlanOptions& options, const NamedWorld& world, Query qu
       world_(world),
       query_(std::move(query)),
       free_motion_(std::move(free_motion)),
-      free_(free_space(query_.start, world)),
-      closing_free_(world.robot, motion::grown_scene(world.scene, free_.margin, world.object)),
-      closing_(world.robot, motion::grown_scene(world.scene, free_.margin, world.object), world.hand_object_pairs()),
+      near_start_(near_start(query_.start, world)),
+      exact_(world.robot, world.scene),
+      clearance_(std::make_shared<const motion::ContinuousCheck>(
+          motion::ContinuousCheck(exact_, world.robot).starting_at(query_.start))),
+      free_(world.robot, motion::grown_scene(world.scene, kGrowth, near_start_)),
+      closing_free_(world.robot, motion::grown_scene(world.scene, kGrowth, with(near_start_, world.object))),
+      closing_(world.robot, motion::grown_scene(world.scene, kGrowth, with(near_start_, world.object)),
+               world.hand_object_pairs()),
       depth_(world.robot, world.scene, world.object, world.hand_links()),
-      space_(motion::make_world(free_.checker, world.robot,
-                                {options.resolution, limits_of(world.robot, options.own_resolution)})) {
+      space_(motion::make_world(free_, world.robot,
+                                {options.resolution, limits_of(world.robot, options.own_resolution)}, clearance_)) {
   const auto variant = motion::variant_named(options.planner);
   require(variant.has_value(), "--planner: no such planner: " + options.planner);
   settings_.variant = *variant;
@@ -118,7 +129,8 @@ Planning::Planning(const PlanOptions& options, const NamedWorld& world, Query qu
 
 /// What may touch on the closing segment: the links of the grasp's own contacts with the object, and nothing else.
 motion::World Planning::closing_of(const Grasp& grasp) const {
-  return motion::closing_world(closing_free_, closing_, world_.robot, grasp.contacts, densest(options_), {&depth_});
+  return motion::closing_world(closing_free_, closing_, world_.robot, grasp.contacts, densest(options_),
+                               {.depth = &depth_, .clearance = clearance_.get()});
 }
 
 /// A goal is of use only when the hand can close from it. The grasps were asked at a spacing of their own, so this is

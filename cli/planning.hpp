@@ -3,7 +3,9 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -13,6 +15,7 @@
 #include "cli/stored.hpp"
 #include "cli/world.hpp"
 #include "motion/contact_depth.hpp"
+#include "motion/continuous_check.hpp"
 #include "motion/plan_diagnostics.hpp"
 #include "motion/syn_planner.hpp"
 #include "robot/collision.hpp"
@@ -46,12 +49,6 @@ struct Run {
   Json human_likeness = Json::array();
 };
 
-/// What paths keep clear of.
-struct FreeSpace {
-  double margin;  ///< m, that the scene's bodies are grown by
-  robot::CollisionChecker checker;
-};
-
 /// What every run shares, read only: one may run on each thread.
 class Planning {
  public:
@@ -62,8 +59,9 @@ class Planning {
   /// Goals whose closing segment is not valid at the chosen resolution have been left out of it.
   const Query& query() const { return query_; }
   std::size_t goals_left_out() const { return goals_left_out_; }
-  const robot::CollisionChecker& checker() const { return free_.checker; }
-  bool keeps_margin() const { return free_.margin > 0.0; }
+  const robot::CollisionChecker& checker() const { return free_; }
+  /// Whether all pairs keep the clearance; else some only what they have at the start.
+  bool keeps_clearance() const { return clearance_->pairs_nearer_at_start() == 0; }
   Run run(std::uint64_t seed) const;
   /// m, how deep a pair that collides at the start is; 0 of others.
   double start_depth(const robot::BodyPair& pair) const;
@@ -78,7 +76,10 @@ class Planning {
   const NamedWorld& world_;
   Query query_;
   std::optional<analysis::LikenessReference> free_motion_;
-  FreeSpace free_;
+  std::set<std::string> near_start_;  ///< bodies that the start is near to
+  robot::CollisionChecker exact_;     ///< the scene as it is
+  std::shared_ptr<const motion::ContinuousCheck> clearance_;
+  robot::CollisionChecker free_;          ///< bodies grown, for the search
   robot::CollisionChecker closing_free_;  ///< of the closing segment: the object as it is
   robot::CollisionChecker closing_;       ///< the same, hand-object pairs left out
   motion::ContactDepth depth_;

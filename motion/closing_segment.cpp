@@ -3,13 +3,20 @@
 #include "motion/closing_segment.hpp"
 
 #include <cstdint>
+#include <memory>
 #include <set>
 #include <string>
 
 #include "core/require.hpp"
+#include "motion/continuous_check.hpp"
 #include "motion/edge_check.hpp"
 
 namespace opponens::motion {
+namespace {
+
+constexpr double kDepthShare = 10.0;  ///< an answer's depth is asked again this much more densely
+
+}  // namespace
 
 World closing_world(const robot::CollisionChecker& free_space, const robot::CollisionChecker& closing,
                     const robot::RobotModel& robot, const std::vector<Contact>& contacts, double resolution,
@@ -33,7 +40,19 @@ World closing_world(const robot::CollisionChecker& free_space, const robot::Coll
     }
     return std::nullopt;
   };
-  return make_world_by_rows(first_invalid_row, robot.weights(), resolution);
+  World world = make_world_by_rows(first_invalid_row, robot.weights(), resolution);
+  const ContinuousCheck all = contact.clearance != nullptr ? *contact.clearance : ContinuousCheck(free_space, robot);
+  const auto clearance = std::make_shared<const ContinuousCheck>(all.without_contacts(closing, links));
+  const auto not_too_deep = [contact](const Eigen::VectorXd& q) {
+    return contact.depth == nullptr || (*contact.depth)(q) <= contact.max_depth;
+  };
+  world.confirm = [clearance, not_too_deep, weights = robot.weights(), resolution](
+                      const Eigen::VectorXd& q_from, const Eigen::VectorXd& q_to,
+                      std::int64_t& checks) -> std::optional<double> {
+    if (const auto near = clearance->first_near(q_from, q_to, checks)) return near;
+    return first_invalid(q_from, q_to, not_too_deep, weights, resolution / kDepthShare, checks);
+  };
+  return world;
 }
 
 namespace {

@@ -56,11 +56,15 @@ class ContactDepth {
   std::vector<Solid> solids_;
 };
 
-/// The largest depth that a closing segment may have. Without a measure it is not bounded.
+class ContinuousCheck;
+
+/// What a closing segment keeps. Without a measure its depth is not bounded.
 struct ContactLimit {
   const ContactDepth* depth = nullptr;
   /// m. Paths are asked at their samples, and `verify` holds all of their motion to 1 mm: a tenth is kept in hand.
   double max_depth = 0.0009;
+  /// Of all that may not touch; null: the default clearance.
+  const ContinuousCheck* clearance = nullptr;
 };
 
 }  // namespace opponens::motion

@@ -138,32 +138,42 @@ World make_world(const Validity& valid, const Eigen::VectorXd& weights, const Sp
   return world;
 }
 
-World make_world(const robot::CollisionChecker& checker, const robot::RobotModel& robot, const Spacing& resolution) {
+World make_world(const robot::CollisionChecker& checker, const robot::RobotModel& robot, const Spacing& resolution,
+                 std::shared_ptr<const ContinuousCheck> clearance) {
   validate(resolution, "make_world");
-  const auto at = [&checker, &robot](const Spacing& spacing) -> MotionCheck {
-    return [&checker, &robot, spacing](const Eigen::VectorXd& q_from, const Eigen::VectorXd& q_to,
-                                       std::int64_t& checks) -> std::optional<double> {
-      if (!robot.within_limits(q_to)) {  // then all between is inside them too, since q_from is
-        ++checks;
-        return 1.0;
-      }
-      return first_invalid(q_from, q_to, checker, robot.weights(), spacing, checks);
-    };
-  };
+  require(clearance != nullptr, "make_world: no clearance given");
   World world;
-  world.first_invalid = at(resolution);
-  world.confirm = at(resolution.divided_by(kConfirmShare));
+  world.first_invalid = [&checker, &robot, resolution](const Eigen::VectorXd& q_from, const Eigen::VectorXd& q_to,
+                                                       std::int64_t& checks) -> std::optional<double> {
+    if (!robot.within_limits(q_to)) {  // then all between is inside them too, since q_from is
+      ++checks;
+      return 1.0;
+    }
+    return first_invalid(q_from, q_to, checker, robot.weights(), resolution, checks);
+  };
+  // Where surfaces keep apart, nothing gets inside anything: one end tells.
+  world.confirm = [&checker, &robot, clearance](const Eigen::VectorXd& q_from, const Eigen::VectorXd& q_to,
+                                                std::int64_t& checks) -> std::optional<double> {
+    ++checks;
+    if (!robot.within_limits(q_to) || !checker.free(q_to)) return 1.0;
+    return clearance->first_near(q_from, q_to, checks);
+  };
   world.explain = [&checker](const Eigen::VectorXd& q) { return checker.colliding_pairs(q); };
-  world.free = [&checker, &robot](const Eigen::MatrixXd& batch, std::int64_t& checks) {
+  world.free = [&checker, &robot, clearance](const Eigen::MatrixXd& batch, std::int64_t& checks) {
     std::vector<bool> free = checker.free_rows(batch);
     for (Eigen::Index row = 0; row < batch.rows(); ++row) {
       const auto index = static_cast<std::size_t>(row);
-      free[index] = free[index] && robot.within_limits(batch.row(row).transpose());
+      const Eigen::VectorXd q = batch.row(row).transpose();
+      free[index] = free[index] && robot.within_limits(q) && clearance->keeps(q);
     }
     checks += batch.rows();
     return free;
   };
   return world;
+}
+
+World make_world(const robot::CollisionChecker& checker, const robot::RobotModel& robot, const Spacing& resolution) {
+  return make_world(checker, robot, resolution, std::make_shared<const ContinuousCheck>(checker, robot));
 }
 
 }  // namespace opponens::motion

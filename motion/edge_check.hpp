@@ -4,10 +4,12 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 
 #include <Eigen/Core>
 
+#include "motion/continuous_check.hpp"
 #include "motion/joint_groups.hpp"
 #include "motion/world.hpp"
 #include "robot/collision.hpp"
@@ -46,8 +48,12 @@ World make_world_by_rows(const FirstInvalidRow& first_row, const Eigen::VectorXd
 World make_world(const Validity& valid, const Eigen::VectorXd& weights, double resolution, double confirm_resolution);
 World make_world(const Validity& valid, const Eigen::VectorXd& weights, const Spacing& resolution);
 
-/// The robot's world: inside the joint limits, and free for the checker, which is asked in batches. Checker and robot
-/// are referred to and must outlive the world.
+/// The robot's world: inside the joint limits, free for the checker, which is asked in batches, and with `clearance`:
+/// motions that are confirmed keep it throughout, single configurations keep it too. Checker and robot are referred to
+/// and must outlive the world. The checker's scene may be larger than that of the clearance's.
+World make_world(const robot::CollisionChecker& checker, const robot::RobotModel& robot, const Spacing& resolution,
+                 std::shared_ptr<const ContinuousCheck> clearance);
+/// With the default clearance of what the checker checks.
 World make_world(const robot::CollisionChecker& checker, const robot::RobotModel& robot, const Spacing& resolution);
 
 }  // namespace opponens::motion

@@ -67,15 +67,18 @@ std::string first_pair(const robot::CollisionChecker& checker, const Eigen::Vect
 
 /// Why q is no part of a closing segment.
 std::string closing_fault(const Grasp& grasp, const robot::CollisionChecker& free_space,
-                          const robot::CollisionChecker& closing, const Eigen::VectorXd& q) {
+                          const robot::CollisionChecker& closing, const ContactLimit& contact,
+                          const Eigen::VectorXd& q) {
   std::string pair = first_pair(closing, q);
   for (const robot::BodyPair& touching : free_space.colliding_pairs(q)) {
-    const bool contact = std::any_of(grasp.contacts.begin(), grasp.contacts.end(), [&](const Contact& c) {
+    const bool in_contact = std::any_of(grasp.contacts.begin(), grasp.contacts.end(), [&](const Contact& c) {
       return c.link == touching.first || c.link == touching.second;
     });
-    if (pair.empty() && !contact) pair = touching.first + "-" + touching.second;
+    if (pair.empty() && !in_contact) pair = touching.first + "-" + touching.second;
   }
-  return pair.empty() ? "closing segment too deep in the object" : "closing segment in collision: " + pair;
+  if (!pair.empty()) return "closing segment in collision: " + pair;
+  const bool too_deep = contact.depth != nullptr && (*contact.depth)(q) > contact.max_depth;
+  return too_deep ? "closing segment too deep in the object" : "closing segment nearer to something than the clearance";
 }
 
 }  // namespace
@@ -115,7 +118,7 @@ std::string reach(Grasp& grasp, const robot::RobotModel& robot, const robot::Inv
     const ClosingSegment segment = closing_segment(q_pregrasp, q_grasp, robot.hand(), world);
     if (segment.invalid) {
       if (closing_reason.empty()) {
-        closing_reason = closing_fault(grasp, free_space, closing, *segment.invalid);
+        closing_reason = closing_fault(grasp, free_space, closing, contact, *segment.invalid);
       }
       continue;
     }

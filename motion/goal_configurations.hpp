@@ -24,9 +24,9 @@ inline constexpr int kMaxArmSolutions = 4;
 /// kMaxArmSolutions, least motion first. Returns an empty string when at least one solution is left, else the reason of
 /// the solution that came furthest: "no inverse kinematics", "outside the joint limits" (of the hand: the arm's
 /// solutions are inside), "pre-grasp in collision: LINK-BODY", "closing segment in collision: LINK-BODY" or "closing
-/// segment too deep in the object"; arm_solutions is empty then. free_space: checker with everything; closing: checker
-/// that leaves hand-object pairs out. X_RO: object in the robot's root. resolution: rad, spacing of checked
-/// configurations. Thread-safe.
+/// segment too deep in the object", "closing segment nearer to something than the clearance"; arm_solutions is empty
+/// then. free_space: checker with everything; closing: checker that leaves hand-object pairs out. X_RO: object in the
+/// robot's root. resolution: rad, spacing of checked configurations. Thread-safe.
 std::string reach(Grasp& grasp, const robot::RobotModel& robot, const robot::InverseKinematics& kinematics,
                   const Eigen::Isometry3d& X_RO, const robot::CollisionChecker& free_space,
                   const robot::CollisionChecker& closing, double resolution, const ContactLimit& contact = {});

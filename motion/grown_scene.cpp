@@ -37,12 +37,12 @@ robot::Shape grown(const std::shared_ptr<const robot::TriangleMesh>& mesh, doubl
 
 }  // namespace
 
-robot::Scene grown_scene(const robot::Scene& scene, double margin, const std::string& except) {
+robot::Scene grown_scene(const robot::Scene& scene, double margin, const std::set<std::string>& except) {
   require(std::isfinite(margin) && margin >= 0.0, "grown_scene: margin must be finite and not negative");
   robot::Scene result = scene;
   if (margin == 0.0) return result;
   for (robot::SceneBody& body : result.bodies) {
-    if (body.name == except) continue;
+    if (except.contains(body.name)) continue;
     for (robot::Geometry& geometry : body.geometry) {
       geometry.shape = std::visit([margin](const auto& shape) { return grown(shape, margin); }, geometry.shape);
     }

@@ -234,13 +234,13 @@ BoundingVolumeTree::Nearest BoundingVolumeTree::nearest(const Eigen::Vector3d& p
   return best;
 }
 
-double BoundingVolumeTree::least(const BoxBound& bound, const TriangleDistance& distance) const {
+double BoundingVolumeTree::least(const BoxBound& bound, const TriangleDistance& distance, double limit) const {
   struct Entry {
     double bound;
     int first;
     int count;
   };
-  double best = kInfinity;
+  double best = limit;
   std::vector<Entry> stack{{0.0, 0, 0}};
   while (!stack.empty()) {
     const Entry entry = stack.back();

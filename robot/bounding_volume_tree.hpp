@@ -50,8 +50,9 @@ class BoundingVolumeTree {
   using TriangleDistance =
       std::function<double(const Eigen::Vector3d& a, const Eigen::Vector3d& ab, const Eigen::Vector3d& ac)>;
 
-  /// Least distance of any triangle; those whose boxes are too far away are not asked.
-  double least(const BoxBound& bound, const TriangleDistance& distance) const;
+  /// Least distance of any triangle, or `limit` when none is nearer; those whose boxes are too far away are not asked.
+  double least(const BoxBound& bound, const TriangleDistance& distance,
+               double limit = std::numeric_limits<double>::infinity()) const;
 
  private:
   struct Item {

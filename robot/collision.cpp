@@ -316,6 +316,8 @@ CollisionChecker::Clearance CollisionChecker::clearance(const Eigen::Ref<const E
   return result;
 }
 
+const CollisionWorld& CollisionChecker::shapes() const { return world_->exact; }
+
 std::vector<std::string> CollisionChecker::open_meshes() const {
   std::set<std::string> names;
   const CollisionWorld& exact = world_->exact;

@@ -17,6 +17,8 @@
 
 namespace opponens::robot {
 
+struct CollisionWorld;
+
 /// Names of two bodies: robot links, or scene bodies.
 using BodyPair = std::pair<std::string, std::string>;
 
@@ -82,6 +84,9 @@ class CollisionChecker {
   bool free(const Eigen::Isometry3d& X_WR, const Eigen::Ref<const Eigen::VectorXd>& q) const;
   std::vector<BodyPair> colliding_pairs(const Eigen::Isometry3d& X_WR,
                                         const Eigen::Ref<const Eigen::VectorXd>& q) const;
+
+  /// What is checked against what; for other questions about the same pairs.
+  const CollisionWorld& shapes() const;
 
  private:
   struct World;

@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot/convex_apart.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "robot/bounding_volume_tree.hpp"
 #include "robot/convex_hull.hpp"
@@ -17,6 +20,9 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int kSteps = 20;
+constexpr int kGapSteps = 60;
+constexpr double kGapTolerance = 1e-6;  ///< m
+constexpr double kCoincident = 1e-12;   ///< m
 
 /// The point of a solid that is farthest along n, in the solid's frame.
 struct Support {
@@ -33,6 +39,13 @@ struct Support {
     Vector3d p(0.0, 0.0, std::copysign(0.5 * c.length, n.z()));
     if (across > 0.0) p.head<2>() = n.head<2>() * (c.radius / across);
     return p;
+  }
+  Vector3d operator()(const Facet& facet) const {
+    const double a = n.dot(facet.a);
+    const double b = n.dot(facet.b);
+    const double c = n.dot(facet.c);
+    if (a >= b) return a >= c ? facet.a : facet.c;
+    return b >= c ? facet.b : facet.c;
   }
   Vector3d operator()(const HullVertices* hull) const {
     const PaddedPoints& points = thorough || hull->few.count == 0 ? hull->all : hull->few;
@@ -158,6 +171,61 @@ Convex convex_relation(const ConvexSolid& a, const ConvexSolid& b, const Eigen::
     v = nearest(simplex);
   }
   return Convex::unknown;
+}
+
+namespace {
+
+/// A sphere is its center and a radius: steps on the round surface would only come near to it.
+double take_radius(ConvexSolid& solid) {
+  auto* sphere = std::get_if<Sphere>(&solid.form);
+  return sphere == nullptr ? 0.0 : std::exchange(sphere->radius, 0.0);
+}
+
+/// convex_gap of what is not a sphere.
+GapBounds gap_by_steps(const ConvexSolid& a, const ConvexSolid& b, const Eigen::Isometry3d& X_AB, double needed,
+                       double enough, Vector3d& away) {
+  const double rounding = rounding_of(a) + rounding_of(b);
+  const auto support = [&](const Vector3d& n, bool thorough) -> Vector3d {
+    const Vector3d turned = -(X_AB.linear().transpose() * n);
+    return std::visit(Support{n, thorough}, a.form) - X_AB.linear() * std::visit(Support{turned, thorough}, b.form) -
+           X_AB.translation();
+  };
+  Vector3d v = away.isZero(kCoincident) ? Vector3d(a.center - X_AB * b.center) : away;
+  if (v.isZero(kCoincident)) v = Vector3d::UnitX();
+  Simplex simplex;
+  GapBounds gap{0.0, std::numeric_limits<double>::infinity()};
+  for (int step = 0; step < kGapSteps; ++step) {
+    const double length = v.norm();
+    if (step > 0) {
+      // Below what a plane has proven: a simplex without volume was taken for one around the origin.
+      if (length + kGapTolerance < gap.lower) return gap;
+      gap.upper = std::min(gap.upper, length + rounding);
+      if (gap.upper < needed || length <= kCoincident) return gap;
+    }
+    away = v;
+    Vector3d w = support(-v, false);
+    double ahead = v.dot(w) / length;
+    if (ahead >= enough + rounding || (step > 0 && length - ahead <= kGapTolerance)) {
+      w = support(-v, true);
+      ahead = v.dot(w) / length;
+      gap.lower = std::max(gap.lower, ahead - rounding);
+      if (gap.lower >= enough || (step > 0 && length - ahead <= kGapTolerance)) return gap;
+    }
+    simplex.corner[static_cast<std::size_t>(simplex.size++)] = w;
+    v = nearest(simplex);
+  }
+  return gap;
+}
+
+}  // namespace
+
+GapBounds convex_gap(const ConvexSolid& a, const ConvexSolid& b, const Eigen::Isometry3d& X_AB, double needed,
+                     double enough, Eigen::Vector3d& away) {
+  ConvexSolid core_a = a;
+  ConvexSolid core_b = b;
+  const double radii = take_radius(core_a) + take_radius(core_b);
+  const GapBounds cores = gap_by_steps(core_a, core_b, X_AB, needed + radii, enough + radii, away);
+  return {std::max(0.0, cores.lower - radii), std::max(0.0, cores.upper - radii)};
 }
 
 }  // namespace opponens::robot

@@ -18,8 +18,13 @@ bool convex_apart(const CollisionShape& a, const Eigen::Isometry3d& X_WA, const 
 
 enum class Convex { apart, overlapping, unknown };
 
-/// A primitive, or the convex hull of points that are referred to.
-using ConvexForm = std::variant<Box, Sphere, Cylinder, const HullVertices*>;
+/// A triangle, m.
+struct Facet {
+  Eigen::Vector3d a, b, c;
+};
+
+/// A primitive, a triangle, or the convex hull of points that are referred to.
+using ConvexForm = std::variant<Box, Sphere, Cylinder, Facet, const HullVertices*>;
 struct ConvexSolid {
   ConvexForm form;
   Eigen::Vector3d center;  ///< a point near its middle, m
@@ -33,5 +38,11 @@ Convex convex_relation(const ConvexSolid& a, const ConvexSolid& b, const Eigen::
                        double depth);
 Convex convex_relation(const CollisionShape& a, const Eigen::Isometry3d& X_WA, const CollisionShape& b,
                        const Eigen::Isometry3d& X_WB, double margin, double depth);
+
+/// The distance of two convex solids by the same steps, within 1e-6 m, or as far as it takes to tell that it is at
+/// least `enough` or below `needed` (m, needed <= enough). away: a direction in A's frame, of any length, from B to A,
+/// to try first (zero: that between the centers); set to the last one tried. A good one settles it in one step.
+GapBounds convex_gap(const ConvexSolid& a, const ConvexSolid& b, const Eigen::Isometry3d& X_AB, double needed,
+                     double enough, Eigen::Vector3d& away);
 
 }  // namespace opponens::robot

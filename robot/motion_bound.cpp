@@ -158,6 +158,16 @@ double MotionBound::between(const LinkTravel& travel, int link_a, int link_b) co
   return upper_part(travel, link_a, shared) + upper_part(travel, link_b, shared);
 }
 
+MotionBound::Shares MotionBound::shares(int link_a, int link_b) const {
+  const auto shared = link_b < 0 ? 0 : static_cast<std::size_t>(shared_(link_a, link_b));
+  const auto last = [&](int link) {
+    if (link < 0) return -1;
+    const Chain& chain = chains_[static_cast<std::size_t>(link)];
+    return chain.joints.size() == shared ? -1 : static_cast<int>(chain.first + chain.joints.size() - shared) - 1;
+  };
+  return {last(link_a), last(link_b)};
+}
+
 std::vector<double> link_displacements(const RobotModel& robot, const Eigen::Ref<const Eigen::VectorXd>& q_a,
                                        const Eigen::Ref<const Eigen::VectorXd>& q_b) {
   const MotionBound bound(robot);

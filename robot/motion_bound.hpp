@@ -46,6 +46,19 @@ class MotionBound {
 
   /// m, of any point of the link, relative to the root.
   double of_link(const LinkTravel& travel, int link) const;
+  /// Where the travel of two links relative to each other stands among the sums: that of each, -1 for none.
+  struct Shares {
+    int a;
+    int b;
+  };
+  /// link_b < 0: a body that does not move with the robot.
+  Shares shares(int link_a, int link_b) const;
+  /// m, the same as between() or of_link(), of a part of the motion: share (0 to 1) of its length.
+  double of_part(const LinkTravel& travel, const Shares& shares, double share) const {
+    const double a = shares.a < 0 ? 0.0 : travel.sums[static_cast<std::size_t>(shares.a)];
+    const double b = shares.b < 0 ? 0.0 : travel.sums[static_cast<std::size_t>(shares.b)];
+    return factor_ * share * (a + b);
+  }
   /// m, by which the distance of two links can change: only the joints below their last common ancestor count.
   double between(const LinkTravel& travel, int link_a, int link_b) const;
 

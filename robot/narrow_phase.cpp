@@ -204,6 +204,13 @@ double mesh_primitive_gap(const CollisionShape& mesh, const Eigen::Isometry3d& X
       });
 }
 
+double fcl_distance(const fcl::CollisionGeometryd* a, const Eigen::Isometry3d& X_WA, const fcl::CollisionGeometryd* b,
+                    const Eigen::Isometry3d& X_WB, double limit) {
+  fcl::DistanceResultd result(limit);  // only nearer pairs of triangles are descended to
+  fcl::distance(a, X_WA, b, X_WB, fcl::DistanceRequestd(false, false), result);
+  return std::clamp(result.min_distance, 0.0, limit);
+}
+
 }  // namespace
 
 CollisionShape::CollisionShape(const Shape& shape) {
@@ -222,6 +229,11 @@ const HullVertices& CollisionShape::hull() const {
 }
 
 const Shape& CollisionShape::shape() const { return data_->shape; }
+
+const BoundingVolumeTree& CollisionShape::triangles() const {
+  require(data_->mesh != nullptr, "CollisionShape: only a mesh has triangles");
+  return data_->region().triangles();
+}
 
 bool CollisionShape::open_surface() const { return data_->mesh != nullptr && data_->region().open(); }
 
@@ -262,9 +274,22 @@ double separation(const CollisionShape& a, const Eigen::Isometry3d& X_WA, const 
   return std::max(distance, kLeastSeparation);
 }
 
+double leaves_distance(const CollisionShape& a, const Eigen::Isometry3d& X_WA, int leaf_a, const CollisionShape& b,
+                       const Eigen::Isometry3d& X_WB, int leaf_b, double limit) {
+  return fcl_distance(a.data().fcl->leaf(a.cover(), leaf_a), X_WA, b.data().fcl->leaf(b.cover(), leaf_b), X_WB, limit);
+}
+
 double point_box_distance(const Eigen::Vector3d& p, const OrientedBox& box) {
   const Eigen::Vector3d local = box.axes.transpose() * (p - box.center);
   return (local.cwiseAbs() - box.half_extents).cwiseMax(0.0).norm();
+}
+
+double box_gap(const OrientedBox& a, const OrientedBox& b) {
+  const Eigen::Matrix3d R = a.axes.transpose() * b.axes;
+  const Eigen::Vector3d t = a.axes.transpose() * (b.center - a.center);
+  const Eigen::Matrix3d Q = R.cwiseAbs();
+  return std::max({0.0, (t.cwiseAbs() - a.half_extents - Q * b.half_extents).maxCoeff(),
+                   ((R.transpose() * t).cwiseAbs() - b.half_extents - Q.transpose() * a.half_extents).maxCoeff()});
 }
 
 bool boxes_apart(const OrientedBox& a, const OrientedBox& b, double margin) {

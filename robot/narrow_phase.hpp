@@ -14,6 +14,8 @@
 
 namespace opponens::robot {
 
+class BoundingVolumeTree;
+
 /// A shape prepared for collision queries: FCL geometry, bounding volumes, and for meshes the solids that their closed
 /// components enclose. Cheap to copy, immutable, thread-safe. What takes long to make is made when it is needed first,
 /// and is shared by all that are made of the same mesh (the same object in memory) while one of them lives.
@@ -37,6 +39,8 @@ class CollisionShape {
   /// [nodes of cover()] of a mesh, convex hulls that contain its surface together (MeshCover); of a primitive none.
   const std::vector<HullVertices>& pieces() const;
   const Shape& shape() const;
+  /// Of a mesh; throws std::invalid_argument for a primitive.
+  const BoundingVolumeTree& triangles() const;
 
   /// A mesh with a component that is not closed: that component is a surface without an inside.
   bool open_surface() const;
@@ -73,6 +77,17 @@ bool leaves_meet(const CollisionShape& a, const Eigen::Isometry3d& X_WA, int lea
 double separation(const CollisionShape& a, const Eigen::Isometry3d& X_WA, const CollisionShape& b,
                   const Eigen::Isometry3d& X_WB);
 
+/// Distance between two meshes' triangles in leaves of their covers (and some beside), by fcl::distance, which is exact
+/// for triangles; m, or `limit` when they are not nearer, 0 where they meet.
+double leaves_distance(const CollisionShape& a, const Eigen::Isometry3d& X_WA, int leaf_a, const CollisionShape& b,
+                       const Eigen::Isometry3d& X_WB, int leaf_b, double limit);
+
+/// Bounds of the distance of two solids, m; `upper` is infinite where none was looked for.
+struct GapBounds {
+  double lower;
+  double upper;
+};
+
 /// m. What is not FCL must find two solids further apart than this to settle that they are: above the tolerance of
 /// FCL's tests (1e-6), so that the verdict is FCL's, with or without it.
 inline constexpr double kCullMargin = 2e-6;
@@ -86,6 +101,9 @@ struct OrientedBox {
 
 /// Lower bound of the distance from a point to a box; 0 inside. Exact.
 double point_box_distance(const Eigen::Vector3d& p, const OrientedBox& box);
+
+/// Lower bound of the distance of two boxes: the most that the normals of their faces keep them apart, m.
+double box_gap(const OrientedBox& a, const OrientedBox& b);
 
 /// Whether one of the 15 axes of the separating axis theorem keeps two boxes more than margin apart (Gottschalk 1996).
 bool boxes_apart(const OrientedBox& a, const OrientedBox& b, double margin);

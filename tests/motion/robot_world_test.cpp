@@ -250,7 +250,7 @@ TEST(GrownScene, KeepsTheMarginFromEveryShapeButTheException) {
     body.geometry.push_back({shapes[i], Eigen::Isometry3d::Identity()});
     scene.bodies.push_back(body);
   }
-  const robot::Scene grown = grown_scene(scene, 0.001, "2");
+  const robot::Scene grown = grown_scene(scene, 0.001, {"2"});
   EXPECT_TRUE(
       std::get<robot::Box>(grown.bodies[0].geometry[0].shape).size.isApprox(Eigen::Vector3d(0.102, 0.202, 0.302)));
   EXPECT_DOUBLE_EQ(std::get<robot::Sphere>(grown.bodies[1].geometry[0].shape).radius, 0.041);
