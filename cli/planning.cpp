@@ -121,8 +121,8 @@ Planning::Planning(const PlanOptions& options, const NamedWorld& world, Query qu
   settings_.interrupted = [] { return interrupt_requested.load(); };
   motion::validate(settings_);
   leave_out_goals();
-  if (keeps_margin()) return;
-  for (const auto& pair : free_.checker.colliding_pairs(query_.start)) {
+  if (keeps_clearance()) return;
+  for (const auto& pair : exact_.colliding_pairs(query_.start)) {
     start_depths_[pair] = motion::pair_depth(world_.robot, world_.scene, query_.start, pair);
   }
 }
@@ -143,7 +143,7 @@ void Planning::leave_out_goals() {
     const auto segment = motion::closing_segment(query_.goals[i].q, query_.q_grasp[i], world_.robot.hand(),
                                                  closing_of(kept.grasps[grasp].value));
     const Eigen::VectorXd& q = query_.goals[i].q;
-    if (segment.invalid && world_.robot.within_limits(q) && free_.checker.free(q)) {
+    if (segment.invalid && world_.robot.within_limits(q) && free_.free(q)) {
       ++goals_left_out_;
       continue;
     }
