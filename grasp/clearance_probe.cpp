@@ -15,6 +15,7 @@ constexpr std::size_t kEnoughNear = 40;  // such points: a flat palm on a flat s
 constexpr double kFarShare = 0.9;  // of a distance beyond kExactWithin: a nearer point within it is not looked for
 constexpr double kObstacleMargin = 0.003;  // m, a finger stops this far from support and obstacles
 constexpr double kSelfMargin = 0.001;      // m, and this far from the hand's other links
+constexpr double kEnoughRoom = 0.004;      // m, from everything but the object: more does not make a step longer
 constexpr double kFarthest = 0.05;         // m, distances beyond it do not matter
 constexpr double kExcused = 0.0003;        // m, more than kTouch, by which the excused may come nearer still
 
@@ -55,16 +56,32 @@ Clearance ClearanceProbe::operator()(const HandPose& pose, const std::vector<int
   place(pose);
   near_.clear();
   Clearance least{kFarthest, kFarthest};
+  begin_at_last(pose.X_OH, links, least);
   for (const int link : links) look_at_object(pose.X_OH, static_cast<std::size_t>(link), least);
   // Deep inside, the rough depth is enough: it only tells how far to move before asking again.
   const bool deep = least.object < -2.0 * scene_.target.grid->spacing();
   if (!near_.empty() && !deep) measure(least);
-  if (watch == Watch::object) return least;
+  last_link_ = least.link;
+  if (least.link >= 0) last_p_L_ = (pose.X_OH * X_HL_[static_cast<std::size_t>(least.link)]).inverse() * least.p_O;
+  if (watch == Watch::object || least.object < 0.0) return least;
+  least.others = std::min(kFarthest, std::max(least.object, kEnoughRoom));
   for (const int link : links) {
     least.others = from_obstacles(pose.X_OH, static_cast<std::size_t>(link), least.others);
     if (watch == Watch::everything) least.others = from_hand(static_cast<std::size_t>(link), least.others);
   }
   return least;
+}
+
+/// The point that was nearest when last asked is nearly so again: with it, most others need not be looked at.
+void ClearanceProbe::begin_at_last(const Eigen::Isometry3d& X_OH, const std::vector<int>& links,
+                                   Clearance& least) const {
+  if (std::find(links.begin(), links.end(), last_link_) == links.end()) return;
+  const Eigen::Vector3d p_O = X_OH * X_HL_[static_cast<std::size_t>(last_link_)] * last_p_L_;
+  const double rough = scene_.target.grid->value(p_O);
+  if (rough >= least.object) return;
+  least.object = rough;
+  least.link = last_link_;
+  least.p_O = p_O;
 }
 
 void ClearanceProbe::look_at_object(const Eigen::Isometry3d& X_OH, std::size_t link, Clearance& least) {

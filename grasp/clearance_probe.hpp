@@ -10,7 +10,9 @@ namespace opponens::grasp {
 
 struct Clearance {
   double object;  ///< m
-  double others;  ///< m, from obstacles less 3 mm and the hand's other links less 1 mm; 5 cm when they are not watched
+  /// m, from obstacles less 3 mm and the hand's other links less 1 mm. Not looked for beyond `object` or 4 mm, whichever
+  /// is larger, nor where the object is penetrated; 5 cm when they are not watched.
+  double others;
   int link = -1;  ///< that is nearest to the object; -1: it is farther than 5 cm
   Eigen::Vector3d p_O = Eigen::Vector3d::Zero();  ///< that link's nearest point
 };
@@ -50,6 +52,7 @@ class ClearanceProbe {
   void place(const HandPose& pose);
   void look_at_object(const Eigen::Isometry3d& X_OH, std::size_t link, Clearance& least);
   void measure(Clearance& least);
+  void begin_at_last(const Eigen::Isometry3d& X_OH, const std::vector<int>& links, Clearance& least) const;
   /// The lesser of `least` and the link's distance less the margin.
   double from_obstacles(const Eigen::Isometry3d& X_OH, std::size_t link, double least) const;
   double from_hand(std::size_t link, double least) const;
@@ -61,6 +64,8 @@ class ClearanceProbe {
   std::vector<Eigen::Isometry3d> X_HL_;
   std::vector<Eigen::Vector3d> center_H_;  ///< of the links' bounding spheres
   std::vector<Near> near_;
+  int last_link_ = -1;  ///< that was nearest to the object when last asked
+  Eigen::Vector3d last_p_L_ = Eigen::Vector3d::Zero();
   double obstacle_margin_;
   double self_margin_;
 };

@@ -26,6 +26,7 @@ DistanceGrid::DistanceGrid(const std::function<double(const Eigen::Vector3d&)>& 
   const Eigen::Vector3d extent = (box.max().array() + layout.margin).matrix() - lower_;
   const auto nodes = [&] { return (extent / spacing_).array().ceil().cast<double>() + 1.0; };
   while (nodes().prod() > static_cast<double>(layout.max_nodes)) spacing_ *= 1.1;
+  cells_per_meter_ = 1.0 / spacing_;
   count_ = nodes().cast<int>().max(2);
   upper_ = lower_ + spacing_ * (count_.array() - 1).cast<double>().matrix();
   nodes_.resize(static_cast<std::size_t>(count_.cast<std::int64_t>().prod()));
@@ -46,7 +47,7 @@ DistanceGrid::DistanceGrid(const std::function<double(const Eigen::Vector3d&)>& 
 
 DistanceGrid::Cell DistanceGrid::locate(const Eigen::Vector3d& p) const {
   Cell cell{nullptr, {}, p.cwiseMax(lower_).cwiseMin(upper_)};
-  const Eigen::Vector3d scaled = (cell.inside - lower_) * (1.0 / spacing_);
+  const Eigen::Vector3d scaled = (cell.inside - lower_) * cells_per_meter_;
   std::array<int, 3> corner;
   for (int i = 0; i < 3; ++i) {
     corner[i] = std::clamp(static_cast<int>(scaled[i]), 0, count_[i] - 2);  // not negative: truncation is the floor

@@ -51,6 +51,7 @@ class DistanceGrid {
   double interpolate(const Cell& cell) const;
 
   double spacing_;
+  double cells_per_meter_;
   double margin_;
   Eigen::Vector3d lower_;
   Eigen::Vector3d upper_;
