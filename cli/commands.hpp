@@ -94,6 +94,7 @@ struct PlanOptions {
   std::int64_t max_checks = 0;  ///< 0: none
   double step = 0.4;            ///< rad
   double resolution = 0.02;     ///< rad
+  double speed = 0.5;           ///< share of the joints' velocity and acceleration limits
 };
 struct VerifyOptions {
   Common common{};
@@ -117,6 +118,7 @@ struct ExportOptions {
   std::filesystem::path single_file{};
   std::string format{};
   std::filesystem::path out{};
+  double period = 0.0;  ///< s, of a trajectory's points; 0: its knots
 };
 struct MergeOptions {
   Common common{};
