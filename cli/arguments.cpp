@@ -219,6 +219,7 @@ void declare_plan(CLI::App& app, PlanOptions& options) {
   app.add_option("--resolution", options.resolution, "Spacing of checked configurations, rad")
       ->check(CLI::Range(1e-4, 1.0))
       ->capture_default_str();
+  app.add_flag("--smooth", options.smooth, "Smooth the whole path after the shortcuts; some tenths of a second a path");
   app.add_option("--speed", options.speed, "Share of the joints' velocity and acceleration limits that is used")
       ->check(CLI::Range(0.001, 1.0))
       ->capture_default_str();

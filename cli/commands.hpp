@@ -95,6 +95,7 @@ struct PlanOptions {
   double step = 0.4;            ///< rad
   double resolution = 0.02;     ///< rad
   double speed = 0.5;           ///< share of the joints' velocity and acceleration limits
+  bool smooth = false;          ///< the whole path by least squares, after the shortcuts
 };
 struct VerifyOptions {
   Common common{};

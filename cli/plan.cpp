@@ -83,13 +83,9 @@ Json run_json(const Run& run, const Query& query) {
 }
 
 Json parameters_json(const PlanOptions& options, const NamedWorld& world) {
-  return {{"world", world.parameters},
-          {"planner", options.planner},
-          {"step", options.step},
-          {"resolution", options.resolution},
-          {"max_checks", options.max_checks},
-          {"time_limit", options.time_limit},
-          {"speed", options.speed}};
+  return {{"world", world.parameters},        {"planner", options.planner},       {"step", options.step},
+          {"resolution", options.resolution}, {"max_checks", options.max_checks}, {"time_limit", options.time_limit},
+          {"smooth", options.smooth},         {"smooth", options.smooth},         {"speed", options.speed}};
 }
 
 storage::Record run_record(const Run& run, const Query& query, const storage::Provenance& origin,

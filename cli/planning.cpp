@@ -12,12 +12,18 @@
 #include "motion/edge_check.hpp"
 #include "motion/goal_configurations.hpp"
 #include "motion/grown_scene.hpp"
+#include "motion/joint_metric.hpp"
+#include "motion/scene_clearance.hpp"
 #include "motion/shortcut.hpp"
+#include "motion/smooth.hpp"
 
 namespace opponens::cli {
 namespace {
 
 using analysis::LikenessReference;
+
+/// m: nothing further away is asked about when a path is smoothed.
+constexpr double kSmoothingReach = 0.011;
 
 /// Covariance of a group's grasp phase, in radians.
 LikenessReference grasp_phase_reference(const SynergyGroup& group) {
@@ -101,6 +107,7 @@ Planning::Planning(const PlanOptions& options, const NamedWorld& world, Query qu
   settings_.time_limit = options.time_limit;
   settings_.interrupted = [] { return interrupt_requested.load(); };
   motion::validate(settings_);
+  if (options.smooth) clearances_ = motion::scene_clearances(world.robot, world.scene, kSmoothingReach);
   leave_out_goals();
 }
 
@@ -159,9 +166,15 @@ std::optional<motion::FollowedBoxes> Planning::followed(const PlanResult& planne
 void Planning::finish(Run& run) const {
   const auto& robot = world_.robot;
   const auto boxes = followed(run.planned);
-  const auto shorter =
+  auto shorter =
       boxes ? motion::shortcut_in_boxes(run.planned.path, robot.weights(), space_, *boxes, robot.arm(), run.seed)
             : motion::shortcut(run.planned.path, robot.weights(), space_, {}, run.seed);
+  if (clearances_) {
+    shorter.path = motion::smooth(shorter.path, robot.weights(), robot.lower(), robot.upper(), space_,
+                                  boxes ? &*boxes : nullptr, clearances_, {})
+                       .path;
+    shorter.length = motion::path_length(robot.weights(), shorter.path.waypoints);
+  }
   run.length = shorter.length;
   const auto goal = static_cast<std::size_t>(run.planned.goal);
   const Grasp& grasp = query_.grasps[query_.grasp_of_goal[goal]].value;

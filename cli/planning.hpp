@@ -13,6 +13,7 @@
 #include "cli/world.hpp"
 #include "motion/contact_depth.hpp"
 #include "motion/followed_boxes.hpp"
+#include "motion/smooth.hpp"
 #include "motion/syn_planner.hpp"
 #include "motion/time_optimal.hpp"
 #include "robot/collision.hpp"
@@ -84,6 +85,7 @@ class Planning {
   robot::CollisionChecker closing_;       ///< the same, hand-object pairs left out
   motion::ContactDepth depth_;
   motion::World space_;
+  motion::Clearances clearances_;  ///< empty: paths are not smoothed
   motion::PlannerSettings settings_;
   std::size_t goals_left_out_ = 0;
 };
