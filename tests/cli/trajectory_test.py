@@ -4,10 +4,11 @@
 import csv
 import json
 import pathlib
+import shutil
 import tempfile
 import unittest
 
-from support import must, run
+from support import SOURCE, must, run
 
 try:
     import yaml
@@ -113,6 +114,25 @@ class Trajectories(unittest.TestCase):
             self.assertLessEqual(one["box_distance"][part + "_final"], one["box_distance"][part + "_planned"] + 1e-9)
         self.assertEqual({(entry["of"]) for entry in one["human_likeness_all"]}, {"planned", "final"})
         self.assertAlmostEqual(one["duration_s"], self.plan["path"]["times"][-1])
+
+    def test_acceleration_limits_of_the_robot_file(self):
+        folder = self.root / "robot"
+        shutil.copytree(SOURCE / "models/ur5_allegro", folder)
+        file = folder / "ur5_allegro_right.yaml"
+        text = file.read_text()
+        joints = {}
+        for given, word in (("{elbow_joint: 1.25}", None), ("{no_such: 1}", "no such arm or hand joint"),
+                            ("{elbow_joint: -1}", "positive")):
+            file.write_text(text + f"accelerations: {given}\n")
+            if word is None:
+                joints = {one["name"]: one for one in must("robot", file, "--samples", 0)["joints"]}
+                continue
+            code, _, err = run("robot", file, "--samples", 0)
+            self.assertEqual((code, len(err.strip().splitlines())), (2, 1), err)
+            self.assertIn(word, err)
+        self.assertEqual(joints["elbow_joint"]["acceleration"], 1.25)
+        wrist = joints["wrist_1_joint"]
+        self.assertEqual(wrist["acceleration"], 2.0 * wrist["velocity"])  # the default
 
     def test_refused(self):
         out = self.root / "x"
