@@ -43,10 +43,10 @@ std::string decimals(const Eigen::MatrixBase<Derived>& values) {
 std::int64_t nanoseconds(double seconds) { return std::llround(seconds * static_cast<double>(kNanoseconds)); }
 
 /// What a point is made of, in the message's order: name and value, each as text that JSON and YAML read alike.
-using Fields = std::vector<std::pair<std::string, std::string>>;
+using PointFields = std::vector<std::pair<std::string, std::string>>;
 
-std::vector<Fields> points_of(const motion::Trajectory& trajectory) {
-  std::vector<Fields> points;
+std::vector<PointFields> message_points(const motion::Trajectory& trajectory) {
+  std::vector<PointFields> points;
   for (Eigen::Index i = 0; i < trajectory.times.size(); ++i) {
     const std::int64_t time = nanoseconds(trajectory.times[i]);
     if (i + 1 < trajectory.times.size() && nanoseconds(trajectory.times[i + 1]) == time) continue;
@@ -101,7 +101,7 @@ std::string joint_trajectory_json(const NamedTrajectory& named) {
   std::string text = std::string("{\"header\": ") + kHeader + ",\n\"joint_names\": " + Json(named.joint_names).dump() +
                      ",\n\"points\": [";
   const char* separator = "\n";
-  for (const Fields& point : points_of(named.trajectory)) {
+  for (const PointFields& point : message_points(named.trajectory)) {
     text += separator;
     separator = ",\n";
     const char* before = "{\"";
@@ -118,7 +118,7 @@ std::string joint_trajectory_yaml(const NamedTrajectory& named) {
   std::string text = std::string("header: ") + kHeader + "\njoint_names: [";
   for (const std::string& name : named.joint_names) text += (text.back() == '[' ? "" : ", ") + Json(name).dump();
   text += "]\npoints:\n";
-  for (const Fields& point : points_of(named.trajectory)) {
+  for (const PointFields& point : message_points(named.trajectory)) {
     const char* before = "- ";
     for (const auto& [name, value] : point) {
       text.append(before).append(name).append(": ").append(value).append("\n");
