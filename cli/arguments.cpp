@@ -236,6 +236,10 @@ void declare_plan(CLI::App& app, PlanOptions& options) {
   own("step", "Longest step", options.own_step, 1e-3);
   own("resolution", "Spacing of checked configurations", options.own_resolution, 1e-4);
   app.add_flag("--diagnose", options.diagnose, "Tell of runs that succeeded, too, what the search met");
+  app.add_flag("--smooth", options.smooth, "Smooth the whole path after the shortcuts; some tenths of a second a path");
+  app.add_option("--speed", options.speed, "Share of the joints' velocity and acceleration limits that is used")
+      ->check(CLI::Range(0.001, 1.0))
+      ->capture_default_str();
 }
 
 void declare_check(CLI::App& app, CheckOptions& options) {
@@ -295,8 +299,11 @@ void declare_export(CLI::App& app, ExportOptions& options) {
   app.add_option("--single-file", options.single_file,
                  "HDF5 file to write: the objects and all they were made from; opponens ingest takes it back");
   app.add_option("--format", options.format, "Form of the objects alone")
-      ->check(CLI::IsMember({"csv", "json", "robomimic"}));
+      ->check(CLI::IsMember({"csv", "json", "robomimic", "trajectory_csv", "trajectory_json", "trajectory_yaml"}));
   app.add_option("--out", options.out, "File to write with --format; of csv: the folder");
+  app.add_option("--period", options.period, "Seconds between a trajectory's points; 0 = as stored")
+      ->check(CLI::Range(0.0, 1e3))
+      ->capture_default_str();
 }
 
 void declare_robot(CLI::App& app, RobotOptions& options) {

@@ -102,6 +102,8 @@ struct PlanOptions {
   GroupLengths own_step{};             ///< of arm and hand
   GroupLengths own_resolution{};
   bool diagnose = false;  ///< tell of successes too what the search met
+  double speed = 0.5;     ///< share of the joints' velocity and acceleration limits
+  bool smooth = false;    ///< the whole path by least squares, after the shortcuts
 };
 struct VerifyOptions {
   Common common{};
@@ -125,6 +127,7 @@ struct ExportOptions {
   std::filesystem::path single_file{};
   std::string format{};
   std::filesystem::path out{};
+  double period = 0.0;  ///< s, of a trajectory's points; 0: its knots
 };
 struct MergeOptions {
   Common common{};

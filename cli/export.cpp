@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <functional>
 #include <set>
+#include <span>
 #include <unordered_set>
 
 #include "cli/commands.hpp"
 #include "cli/export_grasps.hpp"
 #include "cli/export_table.hpp"
+#include "cli/export_trajectory.hpp"
 #include "cli/grasp_document.hpp"
 #include "cli/json.hpp"
 #include "cli/records.hpp"
@@ -95,9 +97,9 @@ void append_grasps(const storage::Store& store, const std::vector<storage::Index
 }
 
 /// One JSON document with everything that the objects hold, written object by object.
-void export_json(const storage::Store& store, const std::vector<storage::IndexEntry>& entries, const fs::path& out,
-                 const Console& console) {
-  const storage::Draft draft(out);
+void export_json(const storage::Store& store, const std::vector<storage::IndexEntry>& entries,
+                 const ExportOptions& options, const Console& console) {
+  const storage::Draft draft(options.out);
   std::string text = "{\"schema\":" + std::to_string(kDocumentSchema) + ",\"command\":\"export\",\"objects\":[";
   storage::write_new_file(draft.path(), {}, storage::Durable::no);
   for (std::size_t i = 0; i < entries.size(); ++i) {
@@ -111,16 +113,16 @@ void export_json(const storage::Store& store, const std::vector<storage::IndexEn
   draft.complete();
 }
 
-void export_robomimic(const storage::Store& store, const std::vector<storage::IndexEntry>& entries, const fs::path& out,
-                      const Console&) {
-  storage::RobomimicWriter writer(out);
+void export_robomimic(const storage::Store& store, const std::vector<storage::IndexEntry>& entries,
+                      const ExportOptions& options, const Console&) {
+  storage::RobomimicWriter writer(options.out);
   for (const auto& entry : entries) writer.add(episode_of(entry.id, store.read(entry.id)));
   writer.finish();
 }
 
-void export_csv(const storage::Store& store, const std::vector<storage::IndexEntry>& entries, const fs::path& out,
-                const Console& console) {
-  TableFolder folder(out);
+void export_csv(const storage::Store& store, const std::vector<storage::IndexEntry>& entries,
+                const ExportOptions& options, const Console& console) {
+  TableFolder folder(options.out);
   GraspDocuments documents(store);
   GraspTables grasps;
   for (const auto& entry : entries) {
@@ -137,9 +139,24 @@ void export_csv(const storage::Store& store, const std::vector<storage::IndexEnt
   folder.finish();
 }
 
+/// Writes the one path among the objects; of several the user has to name one.
+template <std::string (*form)(const NamedTrajectory&)>
+void export_trajectory(const storage::Store& store, const std::vector<storage::IndexEntry>& entries,
+                       const ExportOptions& options, const Console&) {
+  if (entries.size() != 1) {
+    throw InputError("--format " + options.format + " writes one path, and there are " +
+                     std::to_string(entries.size()) + "; name one by its id (opponens show --kind path)");
+  }
+  const std::string text = form(trajectory_of(entries[0].id, store.read(entries[0].id), options.period));
+  const storage::Draft draft(options.out);
+  storage::write_new_file(draft.path(), std::as_bytes(std::span(text)), storage::Durable::no);
+  draft.complete();
+}
+
 struct Format {
   std::set<std::string> kinds;  ///< empty: all
-  std::function<void(const storage::Store&, const std::vector<storage::IndexEntry>&, const fs::path&, const Console&)>
+  std::function<void(const storage::Store&, const std::vector<storage::IndexEntry>&, const ExportOptions&,
+                     const Console&)>
       write;
 };
 
@@ -147,7 +164,10 @@ const std::map<std::string, Format>& formats() {
   static const std::map<std::string, Format> all{
       {"csv", {{kRecording, kHandMotion, kPath, kSynergySet, kGrasp}, export_csv}},
       {"json", {{}, export_json}},
-      {"robomimic", {{kRecording, kHandMotion, kPath}, export_robomimic}}};
+      {"robomimic", {{kRecording, kHandMotion, kPath}, export_robomimic}},
+      {"trajectory_csv", {{kPath}, export_trajectory<trajectory_csv>}},
+      {"trajectory_json", {{kPath}, export_trajectory<joint_trajectory_json>}},
+      {"trajectory_yaml", {{kPath}, export_trajectory<joint_trajectory_yaml>}}};
   return all;
 }
 
@@ -162,7 +182,7 @@ int export_as(const storage::Store& store, const ExportOptions& options, const C
   }
   const std::size_t left_out = std::erase_if(entries, unfit);
   if (entries.empty()) throw InputError("the store holds nothing that has a form in " + options.format);
-  format.write(store, entries, options.out, console);
+  format.write(store, entries, options, console);
   console.say(std::to_string(entries.size()) + " objects in " + options.out.string() +
               (left_out == 0 ? "" : "; " + std::to_string(left_out) + " of other kinds left out"));
   Json result = document("export");
@@ -180,9 +200,12 @@ int export_as(const storage::Store& store, const ExportOptions& options, const C
 int export_objects(const ExportOptions& options, const Console& console) {
   const bool as = !options.format.empty();
   if (as == !options.single_file.empty()) {
-    throw InputError("one of --single-file FILE and --format csv|json|robomimic is needed");
+    throw InputError("one of --single-file FILE and --format csv|json|robomimic|trajectory_... is needed");
   }
   if (as && options.out.empty()) throw InputError("--format needs --out: the file (csv: the folder) to write");
+  if (options.period > 0.0 && !options.format.starts_with("trajectory_")) {
+    throw InputError("--period belongs to --format trajectory_csv, trajectory_json or trajectory_yaml");
+  }
   if (!as && !options.out.empty()) throw InputError("--out belongs to --format; --single-file names its file itself");
   const storage::Store store(options.common.store, false);
   return as ? export_as(store, options, console) : export_file(store, options, console);

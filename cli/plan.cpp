@@ -81,6 +81,9 @@ Json run_json(const Run& run, const Planning& planning) {
           {"length_rad", solved ? Json(planned.length) : Json(nullptr)},
           {"length_l1_rad", solved ? Json(planned.length_l1) : Json(nullptr)},
           {"shortened_length_rad", solved ? Json(run.length) : Json(nullptr)},
+          {"duration_s", solved ? Json(run.trajectory.times(run.trajectory.times.size() - 1)) : Json(nullptr)},
+          {"stops", solved ? Json(run.stops) : Json(nullptr)},
+          {"box_distance", run.box_distance},
           {"human_likeness", likeness.at("value")},
           {"human_likeness_reference", likeness.at("reference")},
           {"human_likeness_all", run.human_likeness},
@@ -94,7 +97,9 @@ Json parameters_json(const PlanOptions& options, const NamedWorld& world) {
                      {"step", options.step},
                      {"resolution", options.resolution},
                      {"max_checks", options.max_checks},
-                     {"time_limit", options.time_limit.value_or(0.0)}};
+                     {"time_limit", options.time_limit.value_or(0.0)},
+                     {"smooth", options.smooth},
+                     {"speed", options.speed}};
   const auto add = [&](const char* name, const std::optional<double>& own) {
     if (own) parameters[name] = *own;
   };
@@ -118,7 +123,10 @@ storage::Record run_record(const Run& run, const Query& query, const storage::Pr
   record.name = object + " by group " + grasp.value.group;
   record.fields["goal_grasp"] = grasp.id;
   record.fields["motion"] = run.motion.waypoints;
-  record.fields["times"] = run.times;
+  record.fields["times"] = run.trajectory.times;
+  record.fields["velocities"] = run.trajectory.velocities;
+  record.fields["accelerations"] = run.trajectory.accelerations;
+  record.fields["bridge_row"] = std::int64_t{run.planned.bridge_row};
   record.fields["pregrasp_row"] = std::int64_t{run.pregrasp_row};
   record.fields["human_likeness"] = run.human_likeness.dump();
   return record;
@@ -137,7 +145,8 @@ void say_run(const Console& console, const Run& run, const Planning& planning) {
                 static_cast<unsigned long long>(run.seed),
                 query.grasps[query.grasp_of_goal[static_cast<std::size_t>(run.planned.goal)]].value.group.c_str(),
                 static_cast<long long>(run.planned.iterations), static_cast<long long>(run.planned.collision_checks),
-                run.planned.length, run.planned.length_l1, run.length, run.times(run.times.size() - 1));
+                run.planned.length, run.planned.length_l1, run.length,
+                run.trajectory.times(run.trajectory.times.size() - 1));
   console.say(text);
   say_diagnostics(console, run, planning);
 }
@@ -146,7 +155,9 @@ Json path_json(const Run& run) {
   if (run.planned.status != PlanStatus::solved) return nullptr;
   return {{"joint_names", run.motion.joint_names},
           {"waypoints", rows(run.motion.waypoints)},
-          {"times", array(run.times)},
+          {"times", array(run.trajectory.times)},
+          {"velocities", rows(run.trajectory.velocities)},
+          {"accelerations", rows(run.trajectory.accelerations)},
           {"pregrasp_row", run.pregrasp_row}};
 }
 

@@ -7,19 +7,25 @@
 #include <utility>
 
 #include "core/require.hpp"
+#include "motion/blended_path.hpp"
 #include "motion/closing_segment.hpp"
 #include "motion/edge_check.hpp"
 #include "motion/goal_configurations.hpp"
 #include "motion/grown_scene.hpp"
 #include "motion/joint_groups.hpp"
+#include "motion/joint_metric.hpp"
 #include "motion/pair_depth.hpp"
+#include "motion/scene_clearance.hpp"
 #include "motion/shortcut.hpp"
-#include "motion/timing.hpp"
+#include "motion/smooth.hpp"
 
 namespace opponens::cli {
 namespace {
 
 using analysis::LikenessReference;
+
+/// m: nothing further away is asked about when a path is smoothed.
+constexpr double kSmoothingReach = 0.011;
 
 /// Covariance of a group's grasp phase, in radians.
 LikenessReference grasp_phase_reference(const SynergyGroup& group) {
@@ -55,6 +61,18 @@ std::vector<motion::GroupLimit> limits_of(const robot::RobotModel& robot, const 
 double densest(const PlanOptions& options) {
   const GroupLengths& own = options.own_resolution;
   return std::min({options.resolution, own.arm.value_or(options.resolution), own.hand.value_or(options.resolution)});
+}
+
+/// How far planned and final path are from the boxes they follow, at most.
+Json distances(const motion::FollowedBoxes& boxes, const Run& run) {
+  const Eigen::MatrixXd final = run.motion.waypoints.topRows(run.pregrasp_row + 1);
+  const auto change = motion::change_row(boxes, final);
+  require(change.has_value(), "plan: the final path is further from its boxes than the planned one");
+  const auto after = motion::followed_boxes(final, *change, boxes.start, boxes.goal);
+  return {{"start_planned", boxes.start_limit},
+          {"start_final", after.start_limit},
+          {"goal_planned", boxes.goal_limit},
+          {"goal_final", after.goal_limit}};
 }
 
 double thread_cpu_seconds() {
@@ -120,6 +138,7 @@ Planning::Planning(const PlanOptions& options, const NamedWorld& world, Query qu
   settings_.time_limit = options.time_limit.value_or(0.0);
   settings_.interrupted = [] { return interrupt_requested.load(); };
   motion::validate(settings_);
+  if (options.smooth) clearances_ = motion::scene_clearances(world.robot, world.scene, kSmoothingReach);
   leave_out_goals();
   if (keeps_clearance()) return;
   for (const auto& pair : exact_.colliding_pairs(query_.start)) {
@@ -175,17 +194,49 @@ double Planning::start_depth(const robot::BodyPair& pair) const {
   return found == start_depths_.end() ? 0.0 : found->second;
 }
 
+/// The boxes that the planned path followed; nullopt for the baseline, which follows none.
+std::optional<motion::FollowedBoxes> Planning::followed(const PlanResult& planned) const {
+  if (settings_.variant != motion::Variant::synergy) return std::nullopt;
+  const auto& hand = world_.robot.hand();
+  const auto& goal = query_.goals[static_cast<std::size_t>(planned.goal)];
+  return motion::followed_boxes(planned.path.waypoints, planned.bridge_row,
+                                motion::box_distance(query_.synergies.pre_grasp.box, hand),
+                                motion::box_distance(goal.box, hand));
+}
+
+/// Shortened within the boxes it followed, corners rounded, the closing segment appended, timed. At rest at the start,
+/// the pre-grasp and the grasp, and at the closing segment's corner.
 void Planning::finish(Run& run) const {
   const auto& robot = world_.robot;
-  const auto shorter = motion::shortcut(run.planned.path, robot.weights(), space_, {}, run.seed);
+  const auto boxes = followed(run.planned);
+  auto shorter =
+      boxes ? motion::shortcut_in_boxes(run.planned.path, robot.weights(), space_, *boxes, robot.arm(), run.seed)
+            : motion::shortcut(run.planned.path, robot.weights(), space_, {}, run.seed);
+  if (clearances_) {
+    shorter.path = motion::smooth(shorter.path, robot.weights(), robot.lower(), robot.upper(), space_,
+                                  boxes ? &*boxes : nullptr, clearances_, {})
+                       .path;
+    shorter.length = motion::path_length(robot.weights(), shorter.path.waypoints);
+  }
   run.length = shorter.length;
   const auto goal = static_cast<std::size_t>(run.planned.goal);
   const Grasp& grasp = query_.grasps[query_.grasp_of_goal[goal]].value;
-  auto whole = motion::append_closing_segment(shorter.path, query_.q_grasp[goal], robot.hand(), closing_of(grasp));
-  require(whole.has_value(), "plan: a goal without a valid closing segment was reached");
-  run.motion = std::move(*whole);
-  run.pregrasp_row = static_cast<int>(shorter.path.waypoints.rows()) - 1;
-  run.times = motion::waypoint_times(run.motion, robot.velocity(), {});
+  const motion::ClosingSegment closing =
+      motion::closing_segment(query_.goals[goal].q, query_.q_grasp[goal], robot.hand(), closing_of(grasp));
+  require(!closing.invalid, "plan: a goal without a valid closing segment was reached");
+  const motion::BlendSettings blends;
+  const motion::RateLimits limits{options_.speed * robot.velocity(), options_.speed * robot.acceleration()};
+  run.trajectory = motion::time_optimal(motion::stop_at_corners(closing.waypoints), limits, blends);
+  run.pregrasp_row = 0;
+  if (shorter.path.waypoints.rows() > 1) {  // else the start is the pre-grasp
+    const auto blended = motion::blend_corners(shorter.path.waypoints, space_, blends, boxes ? &*boxes : nullptr);
+    const auto transit = motion::time_optimal(blended, limits, blends);
+    run.stops = blended.stops;
+    run.pregrasp_row = static_cast<int>(transit.times.size()) - 1;
+    run.trajectory = motion::joined(transit, run.trajectory);
+  }
+  run.motion = {run.planned.path.joint_names, run.trajectory.positions};
+  if (boxes) run.box_distance = distances(*boxes, run);
   add_human_likeness(run, group_named(query_.synergies, grasp.group));
 }
 
@@ -198,14 +249,15 @@ void Planning::add_human_likeness(Run& run, const SynergyGroup& group) const {
                                   {"value", number(analysis::human_likeness(hand(waypoints), reference))},
                                   {"reference", reference.name}});
   };
-  const Eigen::MatrixXd shortened = run.motion.waypoints.topRows(run.pregrasp_row + 1);
+  const Eigen::MatrixXd final = run.motion.waypoints.topRows(run.pregrasp_row + 1);
   if (free_motion_) {
     add("planned", run.planned.path.waypoints, *free_motion_);
-    add("shortened", shortened, *free_motion_);
+    add("final", final, *free_motion_);
   } else {
     run.human_likeness.push_back({{"of", "planned"}, {"value", nullptr}, {"reference", "none in the store"}});
   }
   add("planned", run.planned.path.waypoints, grasp_phase_reference(group));
+  add("final", final, grasp_phase_reference(group));
 }
 
 }  // namespace opponens::cli

@@ -16,8 +16,11 @@
 #include "cli/world.hpp"
 #include "motion/contact_depth.hpp"
 #include "motion/continuous_check.hpp"
+#include "motion/followed_boxes.hpp"
 #include "motion/plan_diagnostics.hpp"
+#include "motion/smooth.hpp"
 #include "motion/syn_planner.hpp"
+#include "motion/time_optimal.hpp"
 #include "robot/collision.hpp"
 
 namespace opponens::cli {
@@ -41,9 +44,11 @@ std::optional<analysis::LikenessReference> free_motion_reference(const storage::
 struct Run {
   std::uint64_t seed = 0;
   motion::PlanAnswer planned;  ///< as the planner returned it, up to the pre-grasp
-  JointPath motion;            ///< shortened, with the closing segment
-  Eigen::VectorXd times;       ///< [N] s
+  JointPath motion;            ///< final: shortened, its corners rounded, with the closing segment; waypoints = knots
+  motion::Trajectory trajectory;  ///< its timing
   int pregrasp_row = -1;
+  int stops = 0;             ///< corners up to the pre-grasp that could not be rounded
+  Json box_distance;         ///< null for the baseline
   double length = 0.0;       ///< rad, of the shortened path up to the pre-grasp
   double cpu_seconds = 0.0;  ///< of the planner; goes to documents, never into the store
   Json human_likeness = Json::array();
@@ -69,6 +74,7 @@ class Planning {
  private:
   void leave_out_goals();
   motion::World closing_of(const Grasp& grasp) const;
+  std::optional<motion::FollowedBoxes> followed(const PlanResult& planned) const;
   void finish(Run& run) const;
   void add_human_likeness(Run& run, const SynergyGroup& group) const;
 
@@ -84,6 +90,7 @@ class Planning {
   robot::CollisionChecker closing_;       ///< the same, hand-object pairs left out
   motion::ContactDepth depth_;
   motion::World space_;
+  motion::Clearances clearances_;  ///< empty: paths are not smoothed
   motion::PlannerSettings settings_;
   std::map<robot::BodyPair, double> start_depths_;  ///< m, of the pairs that collide at the start
   std::size_t goals_left_out_ = 0;

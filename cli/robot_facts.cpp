@@ -82,6 +82,8 @@ Json joints_json(const robot::RobotModel& model) {
               {"lower", moves ? number(joint.lower) : Json(nullptr)},
               {"upper", moves ? number(joint.upper) : Json(nullptr)},
               {"velocity", moves ? number(joint.velocity) : Json(nullptr)},
+              {"acceleration",
+               moves ? number(joint.acceleration.value_or(robot::kAccelerationRate * joint.velocity)) : Json(nullptr)},
               {"mimic", nullptr},
               {"group", nullptr}};
     if (joint.mimic) {

@@ -50,6 +50,7 @@ inline std::string status_name(PlanStatus status) {
 struct PlanResult {
   PlanStatus status = PlanStatus::no_goals;
   JointPath path;                     ///< empty unless solved; ends at a pre-grasp, before the closing segment
+  int bridge_row = -1;                ///< the waypoint where start and goal tree met; -1 unless solved
   int goal = -1;                      ///< index of the goal that was reached
   std::int64_t iterations = 0;        ///< passes of Algorithm 2's loop
   std::int64_t extends = 0;           ///< calls of SYNEXTEND

@@ -127,6 +127,7 @@ void PlanRun::fill_path(const Bridge& bridge) {
   }
   std::vector<int> back = goal_graph_.forest.path_from_root(bridge.vertex_b);
   std::reverse(back.begin(), back.end());
+  result_.bridge_row = static_cast<int>(waypoints.size()) - 1;
   // The bridge is a vertex of both graphs: kept once.
   for (std::size_t i = 1; i < back.size(); ++i) waypoints.push_back(goal_graph_.forest.vertex(back[i]));
   result_.path.joint_names = query_.joint_names;

@@ -33,4 +33,10 @@ struct World {
   std::function<std::vector<std::pair<std::string, std::string>>(const Eigen::VectorXd& q)> explain;
 };
 
+/// Whether a motion is valid by both: asked as the planner asks, and confirmed as an answer is. Adds to checks.
+inline bool valid_motion(const World& world, const Eigen::VectorXd& q_from, const Eigen::VectorXd& q_to,
+                         std::int64_t& checks) {
+  return !world.first_invalid(q_from, q_to, checks) && !(world.confirm && world.confirm(q_from, q_to, checks));
+}
+
 }  // namespace opponens::motion

@@ -252,8 +252,9 @@ Markup curves(const ReportInput& input) {
                       part.path.waypoints.rightCols(static_cast<Eigen::Index>(hand_names.size())), marks, 4);
   if (timed) {
     out += note(
-        "Straight lines join the waypoints. The motion starts and ends at rest, with a ramp of speed between the "
-        "waypoints that is not drawn, and passes the corners at speed: a controller has to smooth them.");
+        "Straight lines join the waypoints, between which speeds change evenly. Velocities and accelerations keep the "
+        "limits of every joint; the motion rests at the start, at the pre-grasp and at the grasp, and its corners are "
+        "rounded.");
   }
   return out;
 }

@@ -56,6 +56,22 @@ Eigen::VectorXd read_weights(const YamlValue& file, const RobotDescription& desc
   return weights;
 }
 
+/// Key accelerations: limits by joint name, rad/s^2 or m/s^2; a URDF has none.
+void read_accelerations(const YamlValue& file, RobotDescription& description) {
+  const std::optional<YamlValue> given = file.find("accelerations");
+  if (!given) return;
+  std::vector<std::string> names = description.arm_joints;
+  names.insert(names.end(), description.hand_joints.begin(), description.hand_joints.end());
+  for (const auto& [name, value] : given->entries()) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) value.fail("no such arm or hand joint");
+    const double limit = value.number();
+    if (limit <= 0.0) value.fail("expected a positive number, found '" + value.text() + "'");
+    std::find_if(description.joints.begin(), description.joints.end(), [&name = name](const Joint& joint) {
+      return joint.name == name;
+    })->acceleration = limit;
+  }
+}
+
 struct RobotFile {
   YamlValue file;
   YamlValue arm;
@@ -135,6 +151,7 @@ RobotDescription load_arm_alone(const YamlValue& file, const YamlValue& arm, con
   allow_pairs(description, read_pairs(file));
   if (const auto srdf = read_srdf_path(file)) apply_srdf(read_srdf(*srdf), description);
   description.weights = read_weights(file, description);
+  read_accelerations(file, description);
   description.files = {file.file(), urdf};
   add_files_inside(description);
   return description;
@@ -176,6 +193,7 @@ RobotDescription load_arm(const YamlValue& file, const ArmSettings& settings) {
   allow_pairs(description, read_pairs(file));
   if (const auto srdf = read_srdf_path(file)) apply_srdf(read_srdf(*srdf), description);
   description.weights = read_weights(file, description);
+  read_accelerations(file, description);
   description.files = {file.file(), file.at("hand").path(), urdf};
   if (mount) description.files.push_back(robot.hand.urdf.path());
   add_files_inside(description);

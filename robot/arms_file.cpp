@@ -71,7 +71,8 @@ void check_name(const std::string& name, const YamlValue& entry) {
 
 void append_arm(RobotDescription& robot, const std::string& name, const YamlValue& entry, const ArmSettings& settings) {
   check_name(name, entry);
-  entry.allow_keys({"arm", "hand", "mount", "base", "rest", "without_geometry", "weights", "allowed_collisions", "srdf"});
+  entry.allow_keys({"arm", "hand", "mount", "base", "rest", "without_geometry", "weights", "accelerations",
+                    "allowed_collisions", "srdf"});
   RobotDescription arm = load_arm(entry, settings);
   if (const auto rest = entry.find("rest")) read_rest(arm, *rest);
   const std::optional<YamlValue> base = entry.find("base");

@@ -63,8 +63,8 @@ RobotDescription load_robot(const std::filesystem::path& robot_yaml, const std::
   const YamlValue file = YamlValue::load(robot_yaml);
   if (file.has("arms")) return load_arms(file, group, missing);
   if (!group.empty()) file.fail("has one arm and no key 'arms', so there is no arm '" + group + "' to choose");
-  file.allow_keys(
-      {"name", "arm", "hand", "mount", "collision", "without_geometry", "weights", "allowed_collisions", "srdf"});
+  file.allow_keys({"name", "arm", "hand", "mount", "collision", "without_geometry", "weights", "accelerations",
+                   "allowed_collisions", "srdf"});
   return load_arm(file, {read_link_geometry(file), missing});
 }
 

@@ -62,6 +62,7 @@ RobotDescription scaled(const RobotDescription& description, double factor) {
       joint.lower *= factor;
       joint.upper *= factor;
       joint.velocity *= factor;
+      if (joint.acceleration) *joint.acceleration *= factor;
       if (joint.mimic) joint.mimic->offset *= factor;
       if (joint.rest) *joint.rest *= factor;
     }
@@ -106,6 +107,7 @@ void RobotModel::index_joints() {
   lower_.resize(d);
   upper_.resize(d);
   velocity_.resize(d);
+  acceleration_.resize(d);
   rest_.resize(d);
   std::map<std::string, const Joint*> by_name;
   for (const Joint& joint : description_.joints) by_name[joint.name] = &joint;
@@ -119,6 +121,7 @@ void RobotModel::index_joints() {
     lower_[i] = joint->lower;
     upper_[i] = joint->upper;
     velocity_[i] = joint->velocity;
+    acceleration_[i] = joint->acceleration.value_or(kAccelerationRate * joint->velocity);
     rest_[i] = rest_position(*joint);
     found->second = nullptr;
   }

@@ -39,6 +39,7 @@ struct Joint {
   std::optional<Mimic> mimic;
   std::optional<double>
       rest;  ///< rad or m, position while q does not drive it; default: zero, or the limit nearest to it
+  std::optional<double> acceleration;  ///< rad/s^2 or m/s^2, limit; URDF has none
 };
 
 struct Link {
@@ -100,6 +101,10 @@ struct RobotDescription {
 /// Meshes are copied.
 RobotDescription scaled(const RobotDescription& description, double factor);
 
+/// 1/s: a joint without an acceleration limit of its own may reach its velocity limit from rest within half a second.
+/// A choice of ours (a UR5: 6.3 rad/s^2; its MoveIt configuration says 5), as URDF states no such limit.
+inline constexpr double kAccelerationRate = 2.0;
+
 /// An arm that q drives.
 struct DrivenArm {
   std::string name;  ///< empty: the robot has one arm
@@ -135,6 +140,7 @@ class RobotModel {
   const Eigen::VectorXd& lower() const { return lower_; }
   const Eigen::VectorXd& upper() const { return upper_; }                  ///< [d]
   const Eigen::VectorXd& velocity() const { return velocity_; }            ///< [d]
+  const Eigen::VectorXd& acceleration() const { return acceleration_; }    ///< [d] default: kAccelerationRate velocity
   const Eigen::VectorXd& weights() const { return description_.weights; }  ///< [d]
   const Eigen::VectorXd& rest() const { return rest_; }  ///< [d] where they rest when q drives them not
   int link_index(const std::string& name) const;         ///< throws std::invalid_argument when absent
@@ -185,6 +191,7 @@ class RobotModel {
   Eigen::VectorXd lower_;
   Eigen::VectorXd upper_;
   Eigen::VectorXd velocity_;
+  Eigen::VectorXd acceleration_;
   Eigen::VectorXd rest_;
   std::vector<Drive> drives_;  ///< [joints]
   std::vector<Turn> turns_;    ///< [joints]

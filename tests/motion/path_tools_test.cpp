@@ -8,7 +8,6 @@
 #include "motion/edge_check.hpp"
 #include "motion/joint_metric.hpp"
 #include "motion/shortcut.hpp"
-#include "motion/timing.hpp"
 #include "tests/motion/toy_world.hpp"
 
 namespace opponens::motion {
@@ -152,38 +151,6 @@ TEST(Shortcut, LengthFallsWithEveryIterationAndAStraightPathStays) {
   straight.waypoints << -1, 1.5, 0, 0, 0, 1.5, 0, 0, 1, 1.5, 0, 0;
   EXPECT_EQ(shortcut(straight, toy.weights, toy.world(), {}, 1).path.waypoints, straight.waypoints);
   EXPECT_THROW(shortcut(straight, toy.weights, toy.world(), {-1}, 1), std::invalid_argument);
-}
-
-TEST(Timing, HandComputedTrapezoid) {
-  JointPath path{{"a", "b"}, Eigen::MatrixXd(3, 2)};
-  path.waypoints << 0, 0, 1, 0.1, 1, 2.1;  // 1 s at 1 rad/s (a decides), then 1 s at 2 rad/s (b)
-  const Eigen::VectorXd times = waypoint_times(path, Eigen::Vector2d(1, 2), {1.0, 0.5});
-  EXPECT_DOUBLE_EQ(times[0], 0.0);
-  EXPECT_DOUBLE_EQ(times[1], 1.25);  // a quarter is lost in the ramp: u = 0.25 after 0.5 s, then at speed 1
-  EXPECT_DOUBLE_EQ(times[2], 2.5);
-  EXPECT_DOUBLE_EQ(waypoint_times(path, Eigen::Vector2d(1, 2), {0.5, 0.0})[2], 4.0);
-}
-
-TEST(Timing, NoJointPassesItsLimitBetweenWaypoints) {
-  const JointPath path = zigzag();
-  const Eigen::Vector4d velocity(1.0, 2.0, 0.5, 3.0);
-  for (const double ramp : {0.0, 0.1, 0.5, 100.0}) {  // the last makes a triangle
-    const Eigen::VectorXd times = waypoint_times(path, velocity, {0.8, ramp});
-    for (Eigen::Index i = 1; i < times.size(); ++i) {
-      ASSERT_GT(times[i], times[i - 1]);
-      const Eigen::VectorXd mean_speed =
-          (path.waypoints.row(i) - path.waypoints.row(i - 1)).transpose().cwiseAbs() / (times[i] - times[i - 1]);
-      EXPECT_TRUE((mean_speed.array() <= 0.8 * velocity.array() + 1e-12).all()) << "ramp " << ramp;
-    }
-  }
-}
-
-TEST(Timing, RefusesRepeatedWaypointsAndBadLimits) {
-  JointPath path = zigzag();
-  EXPECT_THROW(waypoint_times(path, Eigen::Vector4d(1, 1, 1, 0), {}), std::invalid_argument);
-  path.waypoints.row(2) = path.waypoints.row(1);
-  EXPECT_THROW(waypoint_times(path, Eigen::Vector4d::Ones(), {}), std::invalid_argument);
-  EXPECT_THROW(validate(TimingSettings{0.0, 0.5}), std::invalid_argument);
 }
 
 TEST(ClosingSegment, TogetherWhereItCanElseArmFirst) {

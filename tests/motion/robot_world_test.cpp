@@ -17,7 +17,7 @@
 #include "motion/pair_depth.hpp"
 #include "motion/shortcut.hpp"
 #include "motion/syn_planner.hpp"
-#include "motion/timing.hpp"
+#include "motion/time_optimal.hpp"
 #include "robot/load_robot.hpp"
 #include "robot/mesh.hpp"
 #include "robot/mesh_distance.hpp"
@@ -323,8 +323,15 @@ TEST_P(RobotPlan, ReachesTheShelf) {
     const Eigen::VectorXd from = whole->waypoints.row(i - 1).transpose();
     EXPECT_FALSE(world.confirm(from, whole->waypoints.row(i).transpose(), checks));
   }
-  const Eigen::VectorXd times = waypoint_times(*whole, robot.velocity(), {});
-  EXPECT_GT(times[times.size() - 1], 0.5);
+  const RateLimits limits{robot.velocity(), robot.acceleration()};
+  const BlendedPath blended = blend_corners(shorter.path.waypoints, world, {});
+  const Trajectory trajectory = time_optimal(blended, limits, {});
+  const Eigen::Index last = trajectory.times.size() - 1;
+  EXPECT_GT(trajectory.times[last], least_duration(trajectory.positions, limits));
+  for (Eigen::Index i = 0; i < last; ++i) {
+    EXPECT_TRUE(valid_motion(world, trajectory.positions.row(i).transpose(),
+                             trajectory.positions.row(i + 1).transpose(), checks));
+  }
   RecordProperty("iterations", static_cast<int>(result.iterations));
   RecordProperty("checks", static_cast<int>(result.collision_checks));
   RecordProperty("length_mrad", static_cast<int>(1000 * result.length));
