@@ -81,14 +81,14 @@ std::string tried(const std::vector<Summary>& rows) {
 std::string compared(const std::vector<Comparison>& rows) {
   std::string text =
       "| case against | checks, geometric ratio | checks, ratio of means | checks with confirmation | CPU | length "
-      "difference, rad | length ratio | human-likeness difference | solved by both "
-      "|\n|---|---|---|---|---|---|---|---|---|\n";
+      "difference, rad | length ratio | ratio of sums of joint movements | human-likeness difference | solved by both "
+      "|\n|---|---|---|---|---|---|---|---|---|---|\n";
   for (const Comparison& one : rows) {
     text += "| " + one.planner + " against " + one.baseline + " | " + cell(one.checks_ratio, "%.2f") + " | " +
             cell(one.checks_mean_ratio, "%.2f") + " | " + cell(one.all_checks_ratio, "%.2f") + " | " +
-            cell(one.time_ratio, "%.2f") + " | " + cell(one.length_difference, "%.2f") + " | " +
-            cell(one.length_ratio, "%.2f") + " | " + cell(one.likeness_difference, "%.1f") + " | " +
-            share(one.solved_pairs, one.pairs) + " |\n";
+            cell(one.cpu_ratio, "%.2f") + " | " + cell(one.length_difference, "%.2f") + " | " +
+            cell(one.length_ratio, "%.2f") + " | " + cell(one.length_l1_ratio, "%.2f") + " | " +
+            cell(one.likeness_difference, "%.1f") + " | " + share(one.solved_pairs, one.pairs) + " |\n";
   }
   return text;
 }

@@ -54,7 +54,8 @@ struct Counts {
   std::int64_t checks = 0;
   std::int64_t motions = 0;
   std::int64_t valid = 0;
-  std::int64_t samples = 0;
+  std::int64_t samples = 0;  ///< uniform
+  std::int64_t draws = 0;    ///< of any kind
 };
 
 class Validity : public ob::StateValidityChecker {
@@ -119,6 +120,7 @@ class Sampler : public ob::StateSampler {
  private:
   template <typename Draw>
   void each(ob::State* state, const Draw& draw) {
+    ++counts_.draws;
     const ob::RealVectorBounds& bounds = space_->as<Space>()->getBounds();
     for (std::size_t j = 0; j < bounds.low.size(); ++j) {
       state->as<Space::StateType>()->values[j] = draw(j, bounds.low[j], bounds.high[j]);
@@ -223,8 +225,10 @@ int nearest_goal(const OmplQuery& query, const Eigen::VectorXd& q) {
 bool attempt(Setup& setup, const OmplQuery& query, const motion::World& world, std::int64_t max_checks,
              PlanResult& planned) {
   const std::int64_t before = planned.collision_checks;
-  const ob::PlannerTerminationCondition enough(
-      [&setup, before, max_checks] { return before + setup.counts.checks >= max_checks; });
+  // A lazy planner may go on for long without a check.
+  const ob::PlannerTerminationCondition enough([&setup, before, max_checks] {
+    return before + setup.counts.checks >= max_checks || setup.counts.draws >= max_checks;
+  });
   const bool solved = setup.planner->solve(enough) == ob::PlannerStatus::EXACT_SOLUTION;
   planned.collision_checks += setup.counts.checks;
   planned.extends += setup.counts.motions;
@@ -253,6 +257,7 @@ OmplOutcome plan_with_ompl(OmplPlanner planner, const OmplQuery& query, const mo
     const double begin = thread_cpu_seconds();
     const bool solved = attempt(*setup, query, world, max_checks, outcome.planned);
     outcome.cpu_seconds += thread_cpu_seconds() - begin;
+    if (!solved && setup->counts.draws >= max_checks) break;
     if (!solved) continue;
     outcome.planned.status = PlanStatus::solved;
     break;

@@ -33,7 +33,8 @@ struct OmplOutcome {
 
 /// A planner of OMPL on our world: its state validity checker is World::free, its motion validator
 /// World::first_invalid, its space the joint limits scaled by sqrt(weights), so that its metric and range are ours; all
-/// goals are given as GoalStates. It stops at max_checks configurations. An answer that World::confirm refuses is
+/// goals are given as GoalStates. It stops at max_checks configurations, or at as many
+/// draws of its sampler, since a lazy planner may check next to nothing. An answer that World::confirm refuses is
 /// dropped and the search begins again within the same limit. Deterministic whatever other threads do: all of OMPL's
 /// generators are made while a lock is held and OMPL's seed is set from `seed`, and samples come from our own stream.
 /// Nobody else may use OMPL's generators meanwhile.

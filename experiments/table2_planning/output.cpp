@@ -68,9 +68,10 @@ Json json(const Comparison& one) {
           {"checks_ratio_geometric", json(one.checks_ratio)},
           {"checks_ratio_of_means", json(one.checks_mean_ratio)},
           {"checks_with_confirmation_ratio_geometric", json(one.all_checks_ratio)},
-          {"cpu_ratio_geometric", json(one.time_ratio)},
+          {"cpu_ratio_geometric", json(one.cpu_ratio)},
           {"length_difference_rad", json(one.length_difference)},
           {"length_ratio_geometric", json(one.length_ratio)},
+          {"length_l1_ratio_geometric", json(one.length_l1_ratio)},
           {"human_likeness_difference", json(one.likeness_difference)}};
 }
 

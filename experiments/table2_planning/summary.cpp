@@ -145,7 +145,7 @@ Comparison compare(const std::vector<Record>& records, const std::string& planne
   Comparison result;
   result.planner = planner;
   result.baseline = baseline;
-  Values checks, mean_above, mean_below, all, times, shorter, lengths, likeness;
+  Values checks, mean_above, mean_below, all, times, shorter, lengths, sums, likeness;
   for (const auto& [seed, pair] : pairs) {
     const auto& [own, other] = pair;
     if (own == nullptr || other == nullptr) continue;
@@ -159,14 +159,16 @@ Comparison compare(const std::vector<Record>& records, const std::string& planne
     ++result.solved_pairs;
     shorter.push_back(*own->length - *other->length);
     lengths.push_back(*own->length / *other->length);
+    sums.push_back(*own->length_l1 / *other->length_l1);
     if (own->likeness && other->likeness) likeness.push_back(*own->likeness - *other->likeness);
   }
   result.checks_ratio = geometric(checks);
   result.checks_mean_ratio = ratio_of_means(mean_above, mean_below);
   result.all_checks_ratio = geometric(all);
-  result.time_ratio = geometric(times);
+  result.cpu_ratio = geometric(times);
   result.length_difference = estimate(shorter, mean_of);
   result.length_ratio = geometric(lengths);
+  result.length_l1_ratio = geometric(sums);
   result.likeness_difference = estimate(likeness, mean_of);
   return result;
 }

@@ -45,7 +45,8 @@ struct Comparison {
   std::optional<Estimate> checks_ratio;       ///< of the search
   std::optional<Estimate> checks_mean_ratio;  ///< mean over mean
   std::optional<Estimate> all_checks_ratio;   ///< confirmation included
-  std::optional<Estimate> time_ratio, length_difference, length_ratio, likeness_difference;
+  std::optional<Estimate> cpu_ratio, length_difference, length_ratio, likeness_difference;
+  std::optional<Estimate> length_l1_ratio;  ///< of the sums of all joints' movements
 };
 Comparison compare(const std::vector<Record>& records, const std::string& planner, const std::string& baseline);
 
