@@ -228,8 +228,9 @@ void Planning::finish(Run& run) const {
   const motion::RateLimits limits{options_.speed * robot.velocity(), options_.speed * robot.acceleration()};
   run.trajectory = motion::time_optimal(motion::stop_at_corners(closing.waypoints), limits, blends);
   run.pregrasp_row = 0;
-  if (shorter.path.waypoints.rows() > 1) {  // else the start is the pre-grasp
-    const auto blended = motion::blend_corners(shorter.path.waypoints, space_, blends, boxes ? &*boxes : nullptr);
+  const Eigen::MatrixXd waypoints = motion::distinct(shorter.path.waypoints);
+  if (waypoints.rows() > 1) {  // else the start is the pre-grasp
+    const auto blended = motion::blend_corners(waypoints, space_, blends, boxes ? &*boxes : nullptr);
     const auto transit = motion::time_optimal(blended, limits, blends);
     run.stops = blended.stops;
     run.pregrasp_row = static_cast<int>(transit.times.size()) - 1;

@@ -164,6 +164,21 @@ Eigen::VectorXd curvature(const PathPiece& piece, double s) {
   return -(piece.x * std::cos(angle) + piece.y * std::sin(angle)) / piece.radius;
 }
 
+Eigen::MatrixXd distinct(const Eigen::MatrixXd& waypoints) {
+  Eigen::MatrixXd result(waypoints.rows(), waypoints.cols());
+  Eigen::Index count = 0;
+  for (Eigen::Index i = 0; i < waypoints.rows(); ++i) {
+    const bool repeats = count > 0 && (waypoints.row(i) - result.row(count - 1)).norm() <= kStraight;
+    if (!repeats) {
+      result.row(count++) = waypoints.row(i);
+    } else if (i + 1 == waypoints.rows() && count > 1) {
+      result.row(count - 1) = waypoints.row(i);  // the end itself, not the waypoint beside it
+    }
+  }
+  result.conservativeResize(count, Eigen::NoChange);
+  return result;
+}
+
 void validate(const BlendSettings& settings) {
   const auto positive = [](const char* field, double value) {
     require(std::isfinite(value) && value > 0.0, [&] {

@@ -48,6 +48,10 @@ void validate(const BlendSettings& settings);  ///< throws std::invalid_argument
 /// Number of chords that an arc is checked and stored by.
 int chords(const PathPiece& arc, const BlendSettings& settings);
 
+/// The waypoints without those within 1e-9 rad of the one before, which make no motion; the ends stay as they are where
+/// more than one is left. Trees and shortcuts make such a waypoint about once in some thousand paths.
+Eigen::MatrixXd distinct(const Eigen::MatrixXd& waypoints);
+
 /// Circular blends (Kunz and Stilman 2012, doi:10.15607/RSS.2012.VIII.027, section III): at an inner waypoint with
 /// turn alpha the arc begins l = min(half of either segment, deviation sin(alpha/2) / (1 - cos(alpha/2))) before it and
 /// ends as far after it; radius l / tan(alpha/2). Each arc's chords, and the straight rest of the segments, are asked

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/require.hpp"
+#include "motion/blended_path.hpp"
 #include "motion/joint_metric.hpp"
 
 namespace opponens::motion {
@@ -302,8 +303,9 @@ Smoothed smooth(const JointPath& path, const Eigen::VectorXd& weights, const Eig
   require(boxes == nullptr || change_row(*boxes, path.waypoints),
           "smooth: the path is further from its boxes than they allow");
   Smoothed result{path, {}, {}, 0, 0, 0};
-  if (path.waypoints.rows() < 3) return result;
-  const Divided given = divided(path.waypoints, weights, boxes, settings.points);
+  const Eigen::MatrixXd waypoints = distinct(path.waypoints);
+  if (waypoints.rows() < 3) return result;
+  const Divided given = divided(waypoints, weights, boxes, settings.points);
   result.points = static_cast<int>(given.points.rows()) - 2;
   result.before = result.after = smoothness(given.points, weights);
   const Points wanted = solved(given, weights, lower, upper, boxes, clearances, settings);

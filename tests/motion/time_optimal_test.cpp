@@ -201,6 +201,17 @@ TEST(BlendCorners, ShrinkWhereTheyCollideDownToAStop) {
   }
 }
 
+TEST(BlendCorners, WaypointsThatRepeatAreLeftOut) {
+  Eigen::MatrixXd waypoints(6, 2);
+  waypoints << 0, 0, 1e-12, 0, 1, 0, 1, 1e-11, 2, 1, 2, 1 + 1e-12;
+  Eigen::MatrixXd expected(3, 2);
+  expected << 0, 0, 1, 0, 2, 1 + 1e-12;
+  EXPECT_EQ(distinct(waypoints), expected);
+  EXPECT_EQ(distinct(waypoints.topRows(2)), waypoints.topRows(1));
+  EXPECT_THROW(blend_corners(waypoints, free_world(), {}), std::invalid_argument);
+  EXPECT_EQ(blend_corners(distinct(waypoints), free_world(), {}).corners, 1);
+}
+
 TEST(BlendCorners, ATurnBackIsAStopAndAStraightCornerIsNone) {
   Eigen::MatrixXd waypoints(4, 2);
   waypoints << 0, 0, 1, 0, 2, 0, 0.5, 0;
