@@ -90,7 +90,7 @@ const SynergyGroup& group_named(const SynergySet& set, const std::string& name) 
 Problem::Problem(const Setting& setting, std::uint64_t seed, const Jitter& jitter)
     : setting_(setting), seed_(seed), scene_(setting.scene) {
   draw_base(jitter);
-  const robot::Scene but_object = motion::grown_scene(scene_, kMargin, setting.object);
+  const robot::Scene but_object = motion::grown_scene(scene_, kMargin, {setting.object});
   std::vector<robot::BodyPair> hand_object;
   std::vector<std::string> links;
   for (const robot::Link& link : setting.hand.links()) {

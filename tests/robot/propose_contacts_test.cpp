@@ -183,7 +183,7 @@ RobotDescription hand_of_digits(const std::vector<Digit>& digits, JointType type
   for (const Digit& digit : digits) {
     const int index = static_cast<int>(hand.joints.size());
     hand.joints.push_back(
-        {digit.name + "_joint", type, 0, index + 1, digit.X_PJ, digit.axis, digit.lower, digit.upper, 1.0, {}, {}});
+        {digit.name + "_joint", type, 0, index + 1, digit.X_PJ, digit.axis, digit.lower, digit.upper, 1.0, {}, {}, {}});
     hand.links.push_back({digit.name, index, {{Box{Vector3d(0.01, 0.02, 0.06)}, at(0, 0, 0.03)}}});
     hand.hand_joints.push_back(digit.name + "_joint");
   }

@@ -37,6 +37,7 @@ RobotDescription slider() {
                             1.0,
                             1.0,
                             {},
+                            {},
                             {}});
     robot.links.push_back({name, joint, shape});
     if (type != JointType::fixed) robot.hand_joints.push_back(name + "_joint");
