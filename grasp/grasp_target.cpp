@@ -23,12 +23,21 @@ constexpr double kObstacleHorizon = 0.06;    // m, farther ones need not be told
 constexpr double kSurfaceSpacing = 0.0025;   // m
 constexpr double kSurfacePoints = 40000.0;
 
-/// Principal axes of the points' second moments about their mean, the longest last.
-Eigen::Matrix3d principal_axes(const std::vector<Eigen::Vector3d>& points) {
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& p : points) mean += p / static_cast<double>(points.size());
-  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
-  for (const Eigen::Vector3d& p : points) moments += (p - mean) * (p - mean).transpose();
+/// Principal axes of the surface's second moments about its centre, the longest last. Exact: the integral of x x' over
+/// a triangle of area A and corners a, b, c is A (aa' + bb' + cc' + ss') / 12 with s = a + b + c.
+Eigen::Matrix3d principal_axes(const robot::TriangleMesh& mesh) {
+  double area = 0.0;
+  Eigen::Vector3d first = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
+  for (const auto& triangle : mesh.triangles.colwise()) {
+    const Eigen::Matrix3d corners = mesh.vertices(Eigen::all, triangle);
+    const Eigen::Vector3d sum = corners.rowwise().sum();
+    const double own = 0.5 * (corners.col(1) - corners.col(0)).cross(corners.col(2) - corners.col(0)).norm();
+    area += own;
+    first += own / 3.0 * sum;
+    second += own / 12.0 * (corners * corners.transpose() + sum * sum.transpose());
+  }
+  const Eigen::Matrix3d moments = second / area - first * first.transpose() / (area * area);
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(moments).eigenvectors();
 }
 
@@ -77,7 +86,7 @@ GraspTarget make_target(const robot::Scene& scene, const std::string& object, in
   target.surface = PointTree(robot::surface_samples({target.mesh, Eigen::Isometry3d::Identity()}, spacing));
   target.center_of_mass = robot::is_closed(*target.mesh) ? robot::mass_properties(*target.mesh).center_of_mass
                                                          : Eigen::Vector3d(vertices.rowwise().mean());
-  target.axes = principal_axes(target.surface.points());
+  target.axes = principal_axes(*target.mesh);
   target.rho = (vertices.colwise() - target.center_of_mass).colwise().norm().maxCoeff();
   for (const robot::SceneBody& other : scene.bodies) {
     if (other.name == object || other.geometry.empty()) continue;

@@ -35,7 +35,7 @@ struct GraspTarget {
   PointTree surface;                ///< points 2.5 mm apart (or coarser: at most about 40,000)
   Eigen::VectorXd cumulative_area;  ///< [F] of the triangles, for uniform sampling
   Eigen::Vector3d center_of_mass;   ///< uniform density; mean of the vertices for an open mesh
-  Eigen::Matrix3d axes;             ///< columns: principal axes of the surface points' moments, the longest last
+  Eigen::Matrix3d axes;             ///< columns: principal axes of the surface, the longest last
   double rho;                       ///< m, largest distance of a vertex from it
   std::vector<Obstacle> obstacles;  ///< every other body of the scene
   /// Of a lower bound of their distance, within 20 cm of the object; null: there are none.

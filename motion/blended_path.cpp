@@ -70,7 +70,8 @@ class Blending {
     if (alpha > std::numbers::pi - 1e-3) return {0.0, {}, true};
     double reach = std::min({0.5 * length(i - 1), 0.5 * length(i),
                              settings_.deviation * std::sin(0.5 * alpha) / (1.0 - std::cos(0.5 * alpha))});
-    for (int k = 0; k <= settings_.halvings; ++k, reach *= 0.5) {
+    // Beside a segment hardly longer than nothing there is no room: what is left of it has to be a piece still.
+    for (int k = 0; k <= settings_.halvings && reach >= kStraight; ++k, reach *= 0.5) {
       Corner corner = arc_around(row(i), in, out, alpha, reach);
       corner.arc.row = i;
       if (valid(corner.arc, i)) return corner;

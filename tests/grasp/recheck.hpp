@@ -30,6 +30,18 @@ inline double least_distance(const robot::RobotModel& hand, const Eigen::Isometr
   return least;
 }
 
+/// A link's contacts lie on its surface too, to the tolerance (and what triangles of a round shape are off).
+inline void expect_contacts_on(const Grasp& grasp, const robot::RobotModel& hand, std::size_t link, double tolerance) {
+  const robot::Link& body = hand.links()[link];
+  const robot::MeshDistance surface(std::make_shared<const robot::TriangleMesh>(robot::merge(body.collision)));
+  const Eigen::Isometry3d X_LO = (grasp.X_OH * hand.link_poses(grasp.q_grasp)[link]).inverse();
+  for (const Contact& contact : grasp.contacts) {
+    if (contact.link == body.name) {
+      EXPECT_LT(std::abs(surface.signed_distance(X_LO * contact.p_OC)), tolerance + 2e-4) << body.name;
+    }
+  }
+}
+
 /// Everything a returned grasp promises, checked with code that the search does not use.
 inline void recheck(const Grasp& grasp, const robot::RobotModel& hand, const robot::Scene& scene,
                     const SynergyGroup& group, const grasp::SearchSettings& settings) {
@@ -48,9 +60,7 @@ inline void recheck(const Grasp& grasp, const robot::RobotModel& hand, const rob
   for (std::size_t link = 0; link < hand.links().size(); ++link) {
     const double d = least_distance(hand, grasp.X_OH, grasp.q_grasp, link, object);
     EXPECT_GT(d, -settings.max_penetration - 2e-4) << hand.links()[link].name;
-    if (touching.contains(hand.links()[link].name)) {
-      EXPECT_LT(d, settings.contact_tolerance + 2e-4) << hand.links()[link].name;
-    }
+    if (touching.contains(hand.links()[link].name)) expect_contacts_on(grasp, hand, link, settings.contact_tolerance);
     EXPECT_GT(least_distance(hand, grasp.X_OH_pregrasp, grasp.q_pregrasp, link, object),
               settings.clearance_pregrasp - 2e-4);
   }

@@ -212,6 +212,20 @@ TEST(BlendCorners, WaypointsThatRepeatAreLeftOut) {
   EXPECT_EQ(blend_corners(distinct(waypoints), free_world(), {}).corners, 1);
 }
 
+TEST(BlendCorners, SegmentsHardlyLongerThanNothingLeaveStraightEnds) {
+  const RateLimits limits{Eigen::Vector2d::Ones(), Eigen::Vector2d::Ones()};
+  for (const double tiny : {1.1e-9, 1.5e-9, 1.9e-9, 2.5e-9, 1e-8, 1e-6}) {
+    Eigen::MatrixXd waypoints(4, 2);
+    waypoints << 0.0, 0.0, 0.0, tiny, 1.0, tiny, 1.0, 2.0 * tiny;
+    const BlendedPath path = blend_corners(waypoints, free_world(), {});
+    EXPECT_EQ(path.pieces.front().radius, 0.0) << tiny;
+    EXPECT_EQ(path.pieces.back().radius, 0.0) << tiny;
+    const Trajectory trajectory = time_optimal(path, limits, {});
+    EXPECT_GT(trajectory.times[trajectory.times.size() - 1], 1.9) << tiny;  // 1 rad at 1 rad/s and 1 rad/s^2 takes 2 s
+    EXPECT_LT(trajectory.times[trajectory.times.size() - 1], 2.2) << tiny;
+  }
+}
+
 TEST(BlendCorners, ATurnBackIsAStopAndAStraightCornerIsNone) {
   Eigen::MatrixXd waypoints(4, 2);
   waypoints << 0, 0, 1, 0, 2, 0, 0.5, 0;
