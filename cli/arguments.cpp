@@ -192,9 +192,13 @@ void declare_grasp(CLI::App& app, GraspOptions& options) {
           ->capture_default_str();
   app.add_flag("--free-joints", options.free_joints, "Search over all joints of the hand, not along synergies");
   CLI::Option* const tips =
-      app.add_flag("--tips", options.tips, "Precision grasps: the finger tips alone touch, optimised for l*")
+      app.add_flag("--tips", options.tips, "Precision grasps: the finger tips alone touch, optimised for --goal")
           ->excludes(improvements)
           ->excludes(least);
+  app.add_option("--goal", options.goal, "What precision grasps are optimised for: min_weight (l*) or epsilon")
+      ->check(CLI::IsMember({"min_weight", "epsilon"}))
+      ->needs(tips)
+      ->capture_default_str();
   app.add_option("--import", options.import, "Check and store the grasps of this file; no search")->excludes(tips);
   declare_grasp_limits(app, options);
 }

@@ -72,16 +72,17 @@ struct GraspOptions {
   int max_trials = 2000;
   int min_trials = 128;
   int improvements = 15;
-  std::optional<int> trials{};     ///< exactly so many, in place of both bounds
-  double mu = 0.5;                 ///< friction coefficient
-  int edges = 8;                   ///< of a friction cone
-  double slack_bound = 0.3;        ///< rad, of a synergy grasp
-  double max_penetration = 0.001;  ///< m, of the hand into the object
-  double clearance = 0.01;         ///< m, of the pre-grasp from the object
-  bool free_joints = false;        ///< search over all joints, not along synergies
-  bool tips = false;               ///< precision grasps: finger tips alone touch
-  GraspNoise noise{};              ///< samples 0: no quality under errors
-  std::string import{};            ///< file of grasps made elsewhere; empty: search
+  std::optional<int> trials{};      ///< exactly so many, in place of both bounds
+  double mu = 0.5;                  ///< friction coefficient
+  int edges = 8;                    ///< of a friction cone
+  double slack_bound = 0.3;         ///< rad, of a synergy grasp
+  double max_penetration = 0.001;   ///< m, of the hand into the object
+  double clearance = 0.01;          ///< m, of the pre-grasp from the object
+  bool free_joints = false;         ///< search over all joints, not along synergies
+  bool tips = false;                ///< precision grasps: finger tips alone touch
+  std::string goal = "min_weight";  ///< of precision grasps: min_weight or epsilon
+  GraspNoise noise{};               ///< samples 0: no quality under errors
+  std::string import{};             ///< file of grasps made elsewhere; empty: search
 };
 /// Lengths of their own for the joints of arm and hand, rad.
 struct GroupLengths {

@@ -30,6 +30,7 @@ grasp::PrecisionSettings precision_settings(const GraspOptions& options, int thr
   settings.enough = std::max(settings.enough, 2 * common.count);
   settings.max_trials = options.trials.value_or(std::min(common.max_trials, settings.max_trials));
   if (options.trials) settings.enough = std::max(settings.count, settings.max_trials);  // all of them
+  settings.goal = options.goal == "epsilon" ? grasp::PrecisionGoal::epsilon : grasp::PrecisionGoal::min_weight;
   settings.mu = common.mu;
   settings.max_penetration = common.max_penetration;
   settings.clearance_pregrasp = common.clearance_pregrasp;
@@ -49,7 +50,7 @@ Json precision_json(const GraspOptions& options) {
           {"enough", settings.enough},
           {"draws", settings.draws},
           {"max_evaluations", settings.max_evaluations},
-          {"goal", "min_weight"}};
+          {"goal", options.goal}};
 }
 
 }  // namespace

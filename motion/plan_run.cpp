@@ -16,6 +16,7 @@ PlanRun::PlanRun(const PlanQuery& query, const World& world, const PlannerSettin
       settings_(settings),
       steps_{settings.step, settings.minimum_step, settings.group_steps},
       rng_(stream(seed, "motion/plan")),
+      sampled_(sampled_part(query, settings.sampled_range)),
       start_graph_{SampleForest(query.weights), {}},
       goal_graph_{SampleForest(query.weights), {}},
       fates_(query.goals.size(), GoalFate::not_joined) {
@@ -92,8 +93,12 @@ std::optional<PlanStatus> PlanRun::end_condition() {
 }
 
 Eigen::VectorXd PlanRun::random_configuration() {
-  Eigen::VectorXd q(query_.lower.size());
-  for (Eigen::Index j = 0; j < q.size(); ++j) q[j] = rng_.uniform(query_.lower[j], query_.upper[j]);
+  const bool narrower = sampled_.lower != query_.lower || sampled_.upper != query_.upper;
+  const bool anywhere = !narrower || rng_.uniform() < settings_.full_space_probability;
+  const Eigen::VectorXd& lower = anywhere ? query_.lower : sampled_.lower;
+  const Eigen::VectorXd& upper = anywhere ? query_.upper : sampled_.upper;
+  Eigen::VectorXd q(lower.size());
+  for (Eigen::Index j = 0; j < q.size(); ++j) q[j] = rng_.uniform(lower[j], upper[j]);
   return q;
 }
 

@@ -52,6 +52,7 @@ class PlanRun {
   const PlannerSettings& settings_;
   StepSettings steps_;
   Rng rng_;
+  JointInterval sampled_;  ///< of most targets
   Graph start_graph_;
   Graph goal_graph_;
   std::vector<std::size_t> waiting_;       ///< goals of the query that are not judged yet, the next to join last

@@ -34,12 +34,31 @@ std::optional<Variant> variant_named(std::string_view name) {
   return static_cast<Variant>(found - kVariantNames.begin());
 }
 
+JointInterval sampled_part(const PlanQuery& query, double range) {
+  JointInterval part{query.lower, query.upper};
+  for (Eigen::Index j = 0; j < query.lower.size(); ++j) {
+    double least = query.start.q[j];
+    double most = least;
+    for (const Root& goal : query.goals) {
+      if (goal.joins_at > 0) continue;
+      least = std::min(least, goal.q[j]);
+      most = std::max(most, goal.q[j]);
+    }
+    const double length = std::max(range, most - least);
+    if (!(query.upper[j] - query.lower[j] > length)) continue;
+    part.lower[j] = std::clamp(0.5 * (least + most - length), query.lower[j], query.upper[j] - length);
+    part.upper[j] = part.lower[j] + length;
+  }
+  return part;
+}
+
 void validate(const PlannerSettings& settings) {
   const auto check = [](bool holds, const std::string& field, double value, const std::string& constraint) {
     require(holds,
             [&] { return "PlannerSettings::" + field + " = " + std::to_string(value) + ": must be " + constraint; });
   };
   check(std::isfinite(settings.step) && settings.step > 0.0, "step", settings.step, "positive and finite (rad)");
+  check(settings.sampled_range > 0.0, "sampled_range", settings.sampled_range, "positive (rad; infinite: the limits)");
   check(settings.full_space_probability >= 0.0 && settings.full_space_probability <= 1.0, "full_space_probability",
         settings.full_space_probability, "in [0, 1]");
   check(settings.minimum_step > 0.0 && settings.minimum_step < settings.step, "minimum_step", settings.minimum_step,

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -54,6 +55,10 @@ struct PlannerSettings {
   Variant variant = Variant::synergy;
   double step = 0.4;                     ///< rad, epsilon of Algorithm 3 in the weighted metric
   double full_space_probability = 0.05;  ///< share of targets not projected (docs/deviations.md, 12)
+  /// rad. A joint whose limits are further apart is sampled within an interval of this length around its values at
+  /// start and goals, except for full_space_probability of the targets (docs/deviations.md, 36). Infinite: within the
+  /// limits.
+  double sampled_range = 2.0 * std::numbers::pi;
   double minimum_step = 1e-9;            ///< rad, SYNEXTEND returns nothing below it
   std::int64_t max_iterations = 100000;  ///< passes of Algorithm 2's loop
   std::int64_t max_checks = 0;           ///< 0: unlimited; asked once per iteration, so one iteration may pass it
@@ -86,6 +91,17 @@ struct PlanQuery {
   Eigen::VectorXd upper;                 ///< rad, finite, >= lower
   Eigen::VectorXd weights;               ///< of the joint metric, positive
 };
+
+struct JointInterval {
+  Eigen::VectorXd lower;  ///< [d] rad
+  Eigen::VectorXd upper;  ///< [d] rad
+};
+/// The part of the limits that most targets are drawn from: a joint that can turn more than once reaches every posture
+/// within one turn, so the rest of its range holds copies of what is nearer. Where the limits are more than range
+/// apart, the interval is that long (or holds start and goals, when these are further apart), with start and goals in
+/// its middle as far as the limits leave room. Goals that join
+/// later do not count.
+JointInterval sampled_part(const PlanQuery& query, double range);
 
 /// Algorithm 2, PLANNER, with every valid goal rooted from the beginning, or when it joins. Targets are drawn uniformly
 /// within the limits from a stream of its own: same query, world, settings and seed, same path, byte for byte (unless

@@ -25,6 +25,7 @@
 #include "core/rng.hpp"
 #include "experiments/table2_planning/cpu_time.hpp"
 #include "motion/joint_metric.hpp"
+#include "motion/syn_planner.hpp"
 
 namespace opponens::table2 {
 namespace {
@@ -99,14 +100,18 @@ class Motions : public ob::MotionValidator {
   Counts& counts_;
 };
 
-/// As OMPL's sampler of this space, from our stream.
+/// As OMPL's sampler of this space, from our stream and from the part of the space that our planner samples.
 class Sampler : public ob::StateSampler {
  public:
-  Sampler(const ob::StateSpace* space, std::uint64_t seed, Counts& counts)
-      : ob::StateSampler(space), rng_(stream(seed, "table2/ompl")), counts_(counts) {}
+  Sampler(const ob::StateSpace* space, motion::JointInterval part, std::uint64_t seed, Counts& counts)
+      : ob::StateSampler(space), part_(std::move(part)), rng_(stream(seed, "table2/ompl")), counts_(counts) {}
   void sampleUniform(ob::State* state) override {
     ++counts_.samples;
-    each(state, [&](std::size_t, double low, double high) { return rng_.uniform(low, high); });
+    const bool anywhere = rng_.uniform() < motion::PlannerSettings().full_space_probability;
+    each(state, [&](std::size_t j, double low, double high) {
+      const auto i = static_cast<Eigen::Index>(j);
+      return anywhere ? rng_.uniform(low, high) : rng_.uniform(part_.lower[i], part_.upper[i]);
+    });
   }
   void sampleUniformNear(ob::State* state, const ob::State* near, double distance) override {
     const double* center = near->as<Space::StateType>()->values;
@@ -130,9 +135,18 @@ class Sampler : public ob::StateSampler {
       state->as<Space::StateType>()->values[j] = draw(j, bounds.low[j], bounds.high[j]);
     }
   }
+  motion::JointInterval part_;  ///< in the space's scaled coordinates
   Rng rng_;
   Counts& counts_;
 };
+
+/// What our planner samples of this query, scaled.
+motion::JointInterval sampled_part(const OmplQuery& query, const Eigen::VectorXd& factor) {
+  motion::PlanQuery same{{query.start, {}, -1}, {}, query.joint_names, query.lower, query.upper, query.weights};
+  for (const Eigen::VectorXd& q : query.goals) same.goals.push_back({q, {}, 0});
+  const motion::JointInterval part = motion::sampled_part(same, motion::PlannerSettings().sampled_range);
+  return {part.lower.cwiseProduct(factor), part.upper.cwiseProduct(factor)};
+}
 
 ob::PlannerPtr make_planner(OmplPlanner which, const ob::SpaceInformationPtr& si, double range) {
   const auto ranged = [range](auto planner) -> ob::PlannerPtr {
@@ -173,9 +187,9 @@ struct Setup {
       bounds.setHigh(j, query.upper[j] * scaled.factor[j]);
     }
     space->setBounds(bounds);
-    space->setStateSamplerAllocator([this, seed](const ob::StateSpace* of) {
+    space->setStateSamplerAllocator([this, seed, part = sampled_part(query, scaled.factor)](const ob::StateSpace* of) {
       const std::lock_guard lock(generators());
-      return std::make_shared<Sampler>(of, seed, counts);
+      return std::make_shared<Sampler>(of, part, seed, counts);
     });
     si = std::make_shared<ob::SpaceInformation>(space);
     si->setStateValidityChecker(std::make_shared<Validity>(si, world, scaled, counts));

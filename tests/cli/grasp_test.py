@@ -136,6 +136,12 @@ class Options(Grasp):
             self.assertEqual(len(links), 4)
             self.assertTrue(one["certified"])
             self.assertGreater(one["arm_solutions"], 0)
+        other = self.grasp("--tips", "--free-joints", "--trials", 60, "--count", 2, "--goal", "epsilon")
+        self.assertGreater(len(other["grasps"]), 0)
+        # Each goal is served best by its own optimisation, or as well.
+        best = lambda document, what: max(one[what] for one in document["grasps"])
+        self.assertGreaterEqual(best(other, "epsilon"), best(pinched, "epsilon"))
+        self.assertLessEqual(best(other, "min_weight"), best(pinched, "min_weight"))
 
     def test_free_joints(self):
         free = self.grasp("--free-joints", "--trials", 192)

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
+#include <numbers>
 
 #include "motion/syn_planner.hpp"
 #include "tests/motion/toy_world.hpp"
@@ -61,6 +63,22 @@ TEST(SynPlanner, AGoalThatJoinsLaterLeavesTheSearchBeforeItAsItWas) {
   EXPECT_EQ(with_late.collision_checks, alone.collision_checks);
   goals.back().joins_at = 0;
   EXPECT_NE(plan_toy(toy, kBeforeWall, goals, {}, 5).collision_checks, alone.collision_checks);
+}
+
+TEST(SynPlanner, MostTargetsAreWithinATurnAroundStartAndGoals) {
+  constexpr double kTurn = 2.0 * std::numbers::pi;
+  PlanQuery query{{Eigen::Vector4d(3.0, -6.0, -5.0, 0.5), {}, -1}, {}, {"a", "b", "c", "d"}, {}, {}, {}};
+  query.goals.push_back({Eigen::Vector4d(3.2, -6.2, 5.0, -0.5), {}, 0});
+  query.goals.push_back({Eigen::Vector4d(-6.0, 6.0, 0.0, 0.0), {}, 1, 5});  // joins later
+  query.upper = Eigen::Vector4d(2.0 * kTurn, kTurn, kTurn, 1.0);
+  query.lower = -query.upper;
+  query.weights = Eigen::Vector4d::Ones();
+  const JointInterval part = sampled_part(query, kTurn);
+  // In the middle; at a limit; no shorter than start and goal need; limits less than a turn apart.
+  EXPECT_TRUE(part.lower.isApprox(Eigen::Vector4d(3.1 - 0.5 * kTurn, -kTurn, -5.0, -1.0), 1e-12)) << part.lower;
+  EXPECT_TRUE(part.upper.isApprox(Eigen::Vector4d(3.1 + 0.5 * kTurn, 0.0, 5.0, 1.0), 1e-9)) << part.upper;
+  EXPECT_EQ(sampled_part(query, std::numeric_limits<double>::infinity()).lower, query.lower);
+  EXPECT_EQ(sampled_part(query, std::numeric_limits<double>::infinity()).upper, query.upper);
 }
 
 TEST(SynPlanner, NoGroupMovesMoreThanItsEpsilon) {
