@@ -25,3 +25,17 @@ function(opponens_module name)
     FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/opponens
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 endfunction()
+
+# opponens_wide_source(target name): NAME.cpp, which decides only what double precision looks at again, and so may fuse
+# multiplications; and NAME_avx2.cpp beside it where the processor may have AVX2 (the target then has OPPONENS_AVX2).
+# Files of their own keep the wider instructions out of everything else.
+function(opponens_wide_source target name)
+  set_source_files_properties(${name}.cpp ${name}_avx2.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  set_property(SOURCE ${name}.cpp ${name}_avx2.cpp APPEND PROPERTY COMPILE_OPTIONS
+    -ffp-contract=fast -fno-math-errno -fno-signed-zeros -fno-trapping-math -ffinite-math-only -Wno-psabi)
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+    target_sources(${target} PRIVATE ${name}_avx2.cpp)
+    set_property(SOURCE ${name}_avx2.cpp APPEND PROPERTY COMPILE_OPTIONS -mavx2 -mfma)
+    target_compile_definitions(${target} PRIVATE OPPONENS_AVX2)
+  endif()
+endfunction()

@@ -15,7 +15,6 @@ constexpr std::size_t kEnoughNear = 40;  // such points: a flat palm on a flat s
 constexpr double kFarShare = 0.9;  // of a distance beyond kExactWithin: a nearer point within it is not looked for
 constexpr double kObstacleMargin = 0.003;  // m, a finger stops this far from support and obstacles
 constexpr double kSelfMargin = 0.001;      // m, and this far from the hand's other links
-constexpr double kEnoughRoom = 0.004;      // m, from everything but the object: more does not make a step longer
 constexpr double kFarthest = 0.05;         // m, distances beyond it do not matter
 constexpr double kExcused = 0.0003;        // m, more than kTouch, by which the excused may come nearer still
 

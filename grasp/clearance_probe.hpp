@@ -8,12 +8,15 @@
 
 namespace opponens::grasp {
 
+/// m, from everything but the object: more room does not make a step longer, so it is not looked for.
+inline constexpr double kEnoughRoom = 0.004;
+
 struct Clearance {
   double object;  ///< m
-  /// m, from obstacles less 3 mm and the hand's other links less 1 mm. Not looked for beyond `object` or 4 mm, whichever
-  /// is larger, nor where the object is penetrated; 5 cm when they are not watched.
+  /// m, from obstacles less 3 mm and the hand's other links less 1 mm. Not looked for beyond `object` or kEnoughRoom,
+  /// whichever is larger, nor where the object is penetrated; 5 cm when they are not watched.
   double others;
-  int link = -1;  ///< that is nearest to the object; -1: it is farther than 5 cm
+  int link = -1;                                  ///< that is nearest to the object; -1: it is farther than 5 cm
   Eigen::Vector3d p_O = Eigen::Vector3d::Zero();  ///< that link's nearest point
 };
 

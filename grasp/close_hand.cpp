@@ -22,7 +22,6 @@ constexpr double kOpeningStep = 0.06;  // rad
 constexpr double kMaxPush = 0.2;       // rad of one joint in one step
 constexpr int kMaxPushes = 25;
 constexpr int kMaxSteps = 80;
-constexpr double kLook = 0.004;  // m
 
 /// A one-parameter motion s -> pose with a bound of how fast its points move, m per unit of s.
 struct Motion {
@@ -39,7 +38,7 @@ struct Stop {
 
 /// Follows a motion from a clear pose until the links are kTouch or less from the object or come too near to something
 /// else, by steps no longer than the clearance allows; an overshoot (speed is an estimate) is taken back by bisection.
-/// What is beside the way must not make the steps small: it is looked at every kLook, and no link is thinner.
+/// What is beside the way must not make the steps small: it is looked at every kEnoughRoom, and no link is thinner.
 Stop advance(const Motion& motion, const std::vector<int>& links, Watch watch, ClearanceProbe& probe) {
   double clear = 0.0;
   Clearance at_clear = probe(motion.pose(0.0), links, watch);
@@ -48,9 +47,9 @@ Stop advance(const Motion& motion, const std::vector<int>& links, Watch watch, C
   for (int step = 0; step < kMaxSteps; ++step) {
     if (at_clear.object <= kTouch) return {clear, at_clear, true};
     if (clear >= motion.end || (blocked - clear) * motion.speed < 0.5 * kTouch) break;
-    const double room = std::min(at_clear.object, std::max(at_clear.others, kLook));
+    const double room = std::min(at_clear.object, std::max(at_clear.others, kEnoughRoom));
     const double touch = (at_clear.object - 0.5 * kTouch) / std::max(approach, 0.05 * motion.speed);
-    const double ahead = at_clear.object < kLook ? std::min(touch, kLook / motion.speed) : 0.0;
+    const double ahead = at_clear.object < kEnoughRoom ? std::min(touch, kEnoughRoom / motion.speed) : 0.0;
     double s = std::min(motion.end, clear + std::max({0.8 * room / motion.speed, 0.5 * kTouch / motion.speed, ahead}));
     if (s >= blocked) s = 0.5 * (clear + blocked);
     const Clearance here = probe(motion.pose(s), links, watch);

@@ -40,9 +40,7 @@ struct CollisionWorld {
 
   bool of_scene(int part) const { return part >= robot_parts; }
   const CollisionShape& shape(int part) const { return parts[static_cast<std::size_t>(part)].shape; }
-  bool is_mesh(int part) const {
-    return std::holds_alternative<std::shared_ptr<const TriangleMesh>>(shape(part).shape());
-  }
+  bool is_mesh(int part) const { return robot::is_mesh(shape(part)); }
   bool is_box(int part) const { return std::holds_alternative<Box>(shape(part).shape()); }
 
   /// Calls visit(a, b) for the pairs to check until it returns true; whether it did.

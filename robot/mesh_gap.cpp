@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "robot/bounding_volume_tree.hpp"
+#include "robot/mesh_pieces.hpp"
 
 namespace opponens::robot {
 
@@ -22,33 +23,10 @@ constexpr std::size_t kPending = 256;  ///< entries of a descent; wider trees en
 
 Vector3d moved_point(const Isometry3d& X, const Vector3d& p) { return X.linear() * p + X.translation(); }
 
-Isometry3d relative(const Isometry3d& X_WA, const Isometry3d& X_WB) {
-  Isometry3d X_AB = Isometry3d::Identity();
-  X_AB.linear() = X_WA.linear().transpose() * X_WB.linear();
-  X_AB.translation() = X_WA.linear().transpose() * (X_WB.translation() - X_WA.translation());
-  return X_AB;
-}
-
-bool has_triangles(const CollisionShape& shape) {
-  return std::holds_alternative<std::shared_ptr<const TriangleMesh>>(shape.shape());
-}
-
-/// A mesh's tree of balls with the convex pieces in its leaves.
-struct Cover {
-  const std::vector<SphereTree::Node>& nodes;
-  const std::vector<HullVertices>& hulls;
-
-  explicit Cover(const CollisionShape& mesh) : nodes(mesh.cover().nodes), hulls(mesh.pieces()) {}
-  const SphereTree::Node& node(int index) const { return nodes[static_cast<std::size_t>(index)]; }
-  /// A leaf that is solid throughout has none.
-  bool has_piece(int leaf) const { return hulls[static_cast<std::size_t>(leaf)].all.count > 0; }
-  ConvexSolid piece(int leaf) const { return {&hulls[static_cast<std::size_t>(leaf)], node(leaf).center}; }
-};
-
 /// Calls open(leaf_a, leaf_b) for all leaves whose balls (of a primitive: box) come nearer than `enough`, until it
 /// returns true; whether it did. Also true where a tree is too wide.
 template <typename Open>
-bool any_near(const Cover& a, const Cover& b, const Isometry3d& X_AB, double enough, const Open& open) {
+bool any_near(const MeshPieces& a, const MeshPieces& b, const Isometry3d& X_AB, double enough, const Open& open) {
   std::array<LeafPair, kPending> stack;  // NOLINT: filled before it is read
   std::size_t size = 0;
   stack[size++] = {0, 0};
@@ -73,7 +51,7 @@ bool any_near(const Cover& a, const Cover& b, const Isometry3d& X_AB, double eno
 }
 
 template <typename Open>
-bool any_near(const Cover& mesh, const CollisionShape& primitive, const Isometry3d& X_MP, double enough,
+bool any_near(const MeshPieces& mesh, const CollisionShape& primitive, const Isometry3d& X_MP, double enough,
               const Open& open) {
   const OrientedBox box{moved_point(X_MP, primitive.center()), X_MP.linear(), primitive.half_extents()};
   std::array<int, kPending> stack;  // NOLINT: filled before it is read
@@ -111,7 +89,7 @@ bool all_keep(const AnyNear& any, const Keep& keep, LeafPair& last) {
 
 bool mesh_primitive_keep(const CollisionShape& mesh, const CollisionShape& primitive, const Isometry3d& X_MP,
                          double enough, LeafPair& last) {
-  const Cover cover(mesh);
+  const MeshPieces cover(mesh);
   const ConvexSolid solid = convex_solid(primitive);
   return all_keep([&](const auto& open) { return any_near(cover, primitive, X_MP, enough, open); },
                   [&](const LeafPair& leaves) { return solids_keep(cover.piece(leaves.a), solid, X_MP, enough); },
@@ -120,8 +98,8 @@ bool mesh_primitive_keep(const CollisionShape& mesh, const CollisionShape& primi
 
 bool two_meshes_keep(const CollisionShape& A, const CollisionShape& B, const Isometry3d& X_AB, double enough,
                      LeafPair& last) {
-  const Cover a(A);
-  const Cover b(B);
+  const MeshPieces a(A);
+  const MeshPieces b(B);
   return all_keep(
       [&](const auto& open) { return any_near(a, b, X_AB, enough, open); },
       [&](const LeafPair& leaves) { return solids_keep(a.piece(leaves.a), b.piece(leaves.b), X_AB, enough); }, last);
@@ -129,9 +107,9 @@ bool two_meshes_keep(const CollisionShape& A, const CollisionShape& B, const Iso
 
 double two_meshes_distance(const CollisionShape& A, const Isometry3d& X_WA, const CollisionShape& B,
                            const Isometry3d& X_WB, double needed, double enough) {
-  const Cover a(A);
-  const Cover b(B);
-  const Isometry3d X_AB = relative(X_WA, X_WB);
+  const MeshPieces a(A);
+  const MeshPieces b(B);
+  const Isometry3d X_AB = relative_pose(X_WA, X_WB);
   double distance = enough;
   const bool ended = any_near(a, b, X_AB, enough, [&](const LeafPair& leaves) {
     if (!solids_keep(a.piece(leaves.a), b.piece(leaves.b), X_AB, distance)) {
@@ -171,15 +149,15 @@ double triangles_distance(const CollisionShape& mesh, const CollisionShape& prim
 
 bool pieces_keep(const CollisionShape& a, const Isometry3d& X_WA, const CollisionShape& b, const Isometry3d& X_WB,
                  double enough, LeafPair& last) {
-  if (!has_triangles(b)) return mesh_primitive_keep(a, b, relative(X_WA, X_WB), enough, last);
-  if (!has_triangles(a)) return mesh_primitive_keep(b, a, relative(X_WB, X_WA), enough, last);
-  return two_meshes_keep(a, b, relative(X_WA, X_WB), enough, last);
+  if (!is_mesh(b)) return mesh_primitive_keep(a, b, relative_pose(X_WA, X_WB), enough, last);
+  if (!is_mesh(a)) return mesh_primitive_keep(b, a, relative_pose(X_WB, X_WA), enough, last);
+  return two_meshes_keep(a, b, relative_pose(X_WA, X_WB), enough, last);
 }
 
 double mesh_distance(const CollisionShape& a, const Isometry3d& X_WA, const CollisionShape& b, const Isometry3d& X_WB,
                      double needed, double enough) {
-  if (!has_triangles(b)) return triangles_distance(a, b, relative(X_WA, X_WB), enough);
-  if (!has_triangles(a)) return triangles_distance(b, a, relative(X_WB, X_WA), enough);
+  if (!is_mesh(b)) return triangles_distance(a, b, relative_pose(X_WA, X_WB), enough);
+  if (!is_mesh(a)) return triangles_distance(b, a, relative_pose(X_WB, X_WA), enough);
   return two_meshes_distance(a, X_WA, b, X_WB, needed, enough);
 }
 

@@ -10,6 +10,14 @@
 
 namespace opponens::robot {
 
+/// X_AB of poses in a common frame, rotations taken to be exact.
+inline Eigen::Isometry3d relative_pose(const Eigen::Isometry3d& X_WA, const Eigen::Isometry3d& X_WB) {
+  Eigen::Isometry3d X_AB = Eigen::Isometry3d::Identity();
+  X_AB.linear() = X_WA.linear().transpose() * X_WB.linear();
+  X_AB.translation() = X_WA.linear().transpose() * (X_WB.translation() - X_WA.translation());
+  return X_AB;
+}
+
 /// Leaves of two covers; -1: none. Of a primitive 0.
 struct LeafPair {
   int a = -1;

@@ -17,22 +17,6 @@ using Eigen::Vector3d;
 constexpr int kMostAsked = 12;       ///< pairs of pieces; more take as long as the whole meshes
 constexpr std::size_t kStack = 256;  ///< entries of a descent; wider trees end it with "unknown"
 
-bool is_mesh(const CollisionShape& shape) {
-  return std::holds_alternative<std::shared_ptr<const TriangleMesh>>(shape.shape());
-}
-
-/// A mesh's tree of balls with the convex pieces in its leaves.
-struct Pieces {
-  const std::vector<SphereTree::Node>& nodes;
-  const std::vector<HullVertices>& hulls;
-
-  explicit Pieces(const CollisionShape& mesh) : nodes(mesh.cover().nodes), hulls(mesh.pieces()) {}
-  const SphereTree::Node& node(int index) const { return nodes[static_cast<std::size_t>(index)]; }
-  /// A leaf that is solid throughout has none.
-  bool has_piece(int leaf) const { return hulls[static_cast<std::size_t>(leaf)].all.count > 0; }
-  ConvexSolid piece(int leaf) const { return {&hulls[static_cast<std::size_t>(leaf)], node(leaf).center}; }
-};
-
 /// Planes keep most pieces apart. Of the triangles in the others the truth is asked.
 Solids two_meshes(const CollisionShape& A, const Isometry3d& X_WA, const CollisionShape& B, const Isometry3d& X_WB,
                   double margin) {
@@ -40,8 +24,8 @@ Solids two_meshes(const CollisionShape& A, const Isometry3d& X_WA, const Collisi
     int a;
     int b;
   };
-  const Pieces a(A);
-  const Pieces b(B);
+  const MeshPieces a(A);
+  const MeshPieces b(B);
   const Isometry3d X_AB = X_WA.inverse(Eigen::Isometry) * X_WB;
   int asked = 0;
   std::array<Entry, kStack> stack;  // NOLINT: filled before it is read
@@ -93,8 +77,8 @@ bool surface_reaches_into(const HullVertices& piece, const Shape& primitive, con
 }
 
 /// Of their surfaces.
-Solids mesh_and_primitive(const Pieces& mesh, const CollisionShape& primitive, const Isometry3d& X_MP, double margin,
-                          double depth) {
+Solids mesh_and_primitive(const MeshPieces& mesh, const CollisionShape& primitive, const Isometry3d& X_MP,
+                          double margin, double depth) {
   const ConvexSolid solid = convex_solid(primitive);
   const Isometry3d X_PM = X_MP.inverse(Eigen::Isometry);
   const OrientedBox box{primitive.center(), Eigen::Matrix3d::Identity(), primitive.half_extents()};
@@ -125,9 +109,9 @@ Solids mesh_and_primitive(const Pieces& mesh, const CollisionShape& primitive, c
 Solids pieces_relation(const CollisionShape& a, const Isometry3d& X_WA, const CollisionShape& b, const Isometry3d& X_WB,
                        double margin, double depth) {
   if (is_mesh(a) && is_mesh(b)) return two_meshes(a, X_WA, b, X_WB, margin);
-  const Solids surfaces = is_mesh(a)
-                              ? mesh_and_primitive(Pieces(a), b, X_WA.inverse(Eigen::Isometry) * X_WB, margin, depth)
-                              : mesh_and_primitive(Pieces(b), a, X_WB.inverse(Eigen::Isometry) * X_WA, margin, depth);
+  const Solids surfaces =
+      is_mesh(a) ? mesh_and_primitive(MeshPieces(a), b, X_WA.inverse(Eigen::Isometry) * X_WB, margin, depth)
+                 : mesh_and_primitive(MeshPieces(b), a, X_WB.inverse(Eigen::Isometry) * X_WA, margin, depth);
   return surfaces == Solids::apart && contained(a, X_WA, b, X_WB) ? Solids::touching : surfaces;
 }
 

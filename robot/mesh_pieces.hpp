@@ -3,11 +3,33 @@
 // Internal to robot/: what the convex pieces of meshes tell of two solids.
 #pragma once
 
+#include <cstddef>
+#include <memory>
+#include <variant>
+#include <vector>
+
 #include <Eigen/Geometry>
 
+#include "robot/convex_apart.hpp"
 #include "robot/narrow_phase.hpp"
 
 namespace opponens::robot {
+
+inline bool is_mesh(const CollisionShape& shape) {
+  return std::holds_alternative<std::shared_ptr<const TriangleMesh>>(shape.shape());
+}
+
+/// A mesh's tree of balls with the convex pieces in its leaves; refers to the mesh.
+struct MeshPieces {
+  const std::vector<SphereTree::Node>& nodes;
+  const std::vector<HullVertices>& hulls;
+
+  explicit MeshPieces(const CollisionShape& mesh) : nodes(mesh.cover().nodes), hulls(mesh.pieces()) {}
+  const SphereTree::Node& node(int index) const { return nodes[static_cast<std::size_t>(index)]; }
+  /// A leaf that is solid throughout has none.
+  bool has_piece(int leaf) const { return hulls[static_cast<std::size_t>(leaf)].all.count > 0; }
+  ConvexSolid piece(int leaf) const { return {&hulls[static_cast<std::size_t>(leaf)], node(leaf).center}; }
+};
 
 enum class Solids { apart, touching, unknown };
 

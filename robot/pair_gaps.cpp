@@ -19,13 +19,6 @@ constexpr double kPiecesWithin = 0.004;
 constexpr double kTrianglesWithin = 0.001;
 constexpr double kWithin = 2e-6;  ///< m, of a distance of triangles
 
-Eigen::Isometry3d relative_pose(const Eigen::Isometry3d& X_RA, const Eigen::Isometry3d& X_RB) {
-  Eigen::Isometry3d X_AB = Eigen::Isometry3d::Identity();
-  X_AB.linear() = X_RA.linear().transpose() * X_RB.linear();
-  X_AB.translation() = X_RA.linear().transpose() * (X_RB.translation() - X_RA.translation());
-  return X_AB;
-}
-
 }  // namespace
 
 PairGaps::PairGaps(const CollisionChecker& checker) : world_(checker.shapes()) {

@@ -3,7 +3,6 @@
 #include "verify/nonnegative_least_squares.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <vector>
 
 #include <Eigen/QR>

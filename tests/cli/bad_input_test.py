@@ -7,7 +7,7 @@ import struct
 import tempfile
 import unittest
 
-from support import HEADER, SOURCE, data_set, must, rows, run, snapshot
+from support import HEADER, SOURCE, analysed_store, data_set, must, rows, run, snapshot
 
 class BadInput(unittest.TestCase):
     @classmethod
@@ -15,9 +15,7 @@ class BadInput(unittest.TestCase):
         cls.folder = tempfile.TemporaryDirectory()
         cls.root = pathlib.Path(cls.folder.name)
         cls.store = cls.root / "store"
-        must("simulate", "--store", cls.store, "--repetitions", 2)
-        must("retarget", "--store", cls.store)
-        must("analyze", "--store", cls.store)
+        analysed_store(cls.store)
 
     @classmethod
     def tearDownClass(cls):

@@ -13,7 +13,7 @@ import xml.etree.ElementTree
 
 import numpy
 
-from support import must, run, without_run_log
+from support import analysed_store, must, run, without_run_log
 
 SCENE = "models/scenes/cylinder_shelf.yaml"
 
@@ -44,9 +44,7 @@ class Gallery(unittest.TestCase):
         cls.temporary = tempfile.TemporaryDirectory()
         cls.folder = pathlib.Path(cls.temporary.name)
         cls.store = cls.folder / "store"
-        must("simulate", "--store", cls.store, "--repetitions", 2)
-        must("retarget", "--store", cls.store)
-        must("analyze", "--store", cls.store)
+        analysed_store(cls.store)
         cls.world = ("--store", cls.store, "--scene", SCENE, "--noise-samples", 10)
         cls.found = must("grasp", *cls.world, "--group", 4, "--count", 2, "--min-trials", 64, "--max-trials", 640)
         cls.none = must("grasp", *cls.world, "--group", 1, "--trials", 1, "--mu", 0, code=1)

@@ -9,7 +9,7 @@ import re
 import tempfile
 import unittest
 
-from support import SOURCE, forge, must, run
+from support import SOURCE, analysed_store, forge, must, run
 
 HAND = SOURCE / "models/ur5_allegro/allegro_right.yaml"
 TRIALS = 64  # one batch
@@ -25,9 +25,7 @@ class Grasp(unittest.TestCase):
         cls.directory = tempfile.TemporaryDirectory()
         cls.root = pathlib.Path(cls.directory.name)
         cls.store = cls.root / "store"
-        must("simulate", "--store", cls.store, "--repetitions", 3)
-        must("retarget", "--store", cls.store)
-        cls.groups = [group["name"] for group in must("analyze", "--store", cls.store)["groups"][1:]]
+        cls.groups = [group["name"] for group in analysed_store(cls.store, 3)["groups"][1:]]
         # The search that the others differ from by one option.
         cls.plain = cls.grasp(cls)
 
@@ -242,9 +240,7 @@ class Import(Grasp):
 
     def test_planned_with(self):
         store = self.root / "other"
-        must("simulate", "--store", store, "--repetitions", 3)
-        must("retarget", "--store", store)
-        must("analyze", "--store", store)
+        analysed_store(store, 3)
         scene = ("--scene", "models/scenes/box_table.yaml")
         must("grasp", "--store", store, *scene, "--import", self.write("planned.json", self.plain))
         self.assertEqual(must("verify", "--store", store)["failed"], [])
@@ -335,9 +331,7 @@ class Answers(Grasp):
         self.refuse(2, ["nobody", *self.groups], "--group", "nobody")
         self.refuse(2, ["teapot"], "--object", "teapot")
         empty = self.root / "still"
-        must("simulate", "--store", empty, "--repetitions", 3)
-        must("retarget", "--store", empty)
-        must("analyze", "--store", empty)
+        analysed_store(empty, 3)
 
         def without_synergies(fields):
             for name in ("box_axes", "box_half_width"):

@@ -8,7 +8,7 @@ import shutil
 import tempfile
 import unittest
 
-from support import SOURCE, forge, must, run, snapshot
+from support import SOURCE, analysed_store, forge, must, run, snapshot
 
 SCENE = SOURCE / "models/scenes/cylinder_shelf.yaml"
 INTO_THE_PEDESTAL = ("shoulder_lift_joint: -1.15", "shoulder_lift_joint: 1.0")
@@ -28,9 +28,7 @@ class Plan(unittest.TestCase):
         cls.folder = tempfile.TemporaryDirectory()
         root = pathlib.Path(cls.folder.name)
         cls.empty = root / "empty"
-        must("simulate", "--store", cls.empty, "--repetitions", 3)
-        must("retarget", "--store", cls.empty)
-        must("analyze", "--store", cls.empty)
+        analysed_store(cls.empty, 3)
         cls.store = root / "store"
         shutil.copytree(cls.empty, cls.store)
         must("grasp", "--store", cls.store, "--scene", SCENE, "--count", 1, "--max-trials", 200)

@@ -50,6 +50,13 @@ def run(*arguments, cwd=None, env=None):
     return done.returncode, done.stdout, done.stderr
 
 
+def analysed_store(store, repetitions=2):
+    """Simulated recordings, mapped to the hand, and their synergies; what `analyze` says."""
+    must("simulate", "--store", store, "--repetitions", repetitions)
+    must("retarget", "--store", store)
+    return must("analyze", "--store", store)
+
+
 def start(*arguments, cwd=None):
     """The running program."""
     return subprocess.Popen([PROGRAM, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,

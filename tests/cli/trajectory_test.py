@@ -8,7 +8,7 @@ import shutil
 import tempfile
 import unittest
 
-from support import SOURCE, must, run
+from support import SOURCE, analysed_store, must, run
 
 try:
     import yaml
@@ -31,9 +31,7 @@ class Trajectories(unittest.TestCase):
         cls.folder = tempfile.TemporaryDirectory()
         cls.root = pathlib.Path(cls.folder.name)
         cls.store = cls.root / "store"
-        must("simulate", "--store", cls.store, "--repetitions", 2)
-        must("retarget", "--store", cls.store)
-        must("analyze", "--store", cls.store)
+        analysed_store(cls.store)
         world = ("--store", cls.store, "--scene", "models/scenes/cylinder_shelf.yaml")
         must("grasp", *world, "--group", "1", "--count", 1, "--max-trials", 1500)
         cls.plan = must("plan", *world, "--speed", SPEED)
