@@ -5,12 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <map>
 #include <utility>
 
-#include <boost/multiprecision/gmp.hpp>
+#include <gmpxx.h>
 
 #include "core/require.hpp"
 #include "grasp/certificate.hpp"
@@ -18,7 +17,7 @@
 namespace opponens::grasp {
 namespace {
 
-using Integer = boost::multiprecision::number<boost::multiprecision::gmp_int, boost::multiprecision::et_off>;
+using Integer = mpz_class;
 
 /// mantissa * 2^exponent: every double is one, and sums and products of these are again.
 struct Dyadic {
@@ -29,20 +28,16 @@ struct Dyadic {
 Dyadic exact(double x) {
   if (x == 0.0) return {};
   int exponent = 0;
-  auto mantissa = static_cast<std::int64_t>(std::ldexp(std::frexp(x, &exponent), 53));
-  exponent -= 53;
-  while (mantissa % 2 == 0) {
-    mantissa /= 2;
-    ++exponent;
-  }
-  return {Integer(mantissa), exponent};
+  const Integer mantissa(std::ldexp(std::frexp(x, &exponent), 53));
+  const auto zeros = mpz_scan1(mantissa.get_mpz_t(), 0);
+  return {mantissa >> zeros, exponent - 53 + static_cast<int>(zeros)};
 }
 
 Dyadic operator*(const Dyadic& a, const Dyadic& b) { return {a.mantissa * b.mantissa, a.exponent + b.exponent}; }
 
 Dyadic operator+(const Dyadic& a, const Dyadic& b) {
-  if (a.mantissa.is_zero()) return b;
-  if (b.mantissa.is_zero()) return a;
+  if (a.mantissa == 0) return b;
+  if (b.mantissa == 0) return a;
   if (a.exponent > b.exponent) return b + a;
   return {a.mantissa + (b.mantissa << (b.exponent - a.exponent)), a.exponent};
 }
@@ -82,10 +77,10 @@ Rows integer_rows(const std::vector<Wrench>& wrenches) {
   for (std::size_t i = 0; i < 6; ++i) {
     int least = std::numeric_limits<int>::max();
     for (const Wrench& w : wrenches) {
-      if (!w[i].mantissa.is_zero()) least = std::min(least, w[i].exponent);
+      if (w[i].mantissa != 0) least = std::min(least, w[i].exponent);
     }
     for (const Wrench& w : wrenches) {
-      rows[i].push_back(w[i].mantissa.is_zero() ? Integer(0) : Integer(w[i].mantissa << (w[i].exponent - least)));
+      rows[i].push_back(w[i].mantissa == 0 ? Integer(0) : Integer(w[i].mantissa << (w[i].exponent - least)));
     }
   }
   return rows;
@@ -99,7 +94,7 @@ std::vector<int> eliminate(Rows& rows, std::size_t candidates) {
   for (std::size_t column = 0; column < candidates && pivots.size() < 6; ++column) {
     const std::size_t rank = pivots.size();
     std::size_t found = rank;
-    while (found < 6 && rows[found][column].is_zero()) ++found;
+    while (found < 6 && rows[found][column] == 0) ++found;
     if (found == 6) continue;
     std::swap(rows[rank], rows[found]);
     const Integer pivot = rows[rank][column];
@@ -122,9 +117,9 @@ std::optional<Certificate> without_common_divisor(const std::vector<CertificateE
   for (const auto& [edge, weight] : weights) divisor = gcd(divisor, weight);
   Certificate certificate;
   for (const auto& [edge, weight] : weights) {
-    if (weight.is_zero()) continue;
+    if (weight == 0) continue;
     certificate.edges.push_back(edges[static_cast<std::size_t>(edge)]);
-    certificate.edges.back().coefficient = Integer(weight / divisor).str();
+    certificate.edges.back().coefficient = Integer(weight / divisor).get_str();
   }
   return certificate;
 }
@@ -225,7 +220,7 @@ std::string certificate_fault(const Certificate& certificate, const std::vector<
     for (std::size_t k = 0; k < wrenches.size(); ++k) {
       sum = sum + Dyadic{Integer(certificate.edges[k].coefficient), 0} * wrenches[k][i];
     }
-    if (!sum.mantissa.is_zero()) return "the weighted wrenches do not add up to zero";
+    if (sum.mantissa != 0) return "the weighted wrenches do not add up to zero";
   }
   Rows rows = integer_rows(wrenches);
   const std::size_t rank = eliminate(rows, wrenches.size()).size();

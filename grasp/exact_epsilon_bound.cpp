@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include <boost/multiprecision/gmp.hpp>
+#include <gmpxx.h>
 
 #include "core/require.hpp"
 #include "grasp/certificate.hpp"
@@ -14,7 +14,7 @@
 namespace opponens::grasp {
 namespace {
 
-using Rational = boost::multiprecision::number<boost::multiprecision::gmp_rational, boost::multiprecision::et_off>;
+using Rational = mpq_class;
 using RationalVector = std::array<Rational, 3>;
 
 /// An edge in doubles is off by less than this share of its length: normal, tangents, cosine and length are each good
@@ -64,7 +64,7 @@ double quotient_rounded_up(const Rational& value, const Rational& squared_length
     return r >= 0.0 || product <= squared;
   };
   const double infinity = std::numeric_limits<double>::infinity();
-  double r = value.convert_to<double>() / std::sqrt(squared_length.convert_to<double>());
+  double r = value.get_d() / std::sqrt(squared_length.get_d());
   if (!std::isfinite(r)) return infinity;  // of no use, but true
   while (at_least(r)) r = std::nextafter(r, -infinity);
   while (!at_least(r)) r = std::nextafter(r, infinity);

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include <boost/multiprecision/gmp.hpp>
+#include <gmpxx.h>
 
 #include "verify/closure.hpp"
 #include "verify/verdict.hpp"
@@ -14,7 +14,7 @@
 namespace opponens::verify {
 namespace {
 
-using Rational = boost::multiprecision::number<boost::multiprecision::gmp_rational, boost::multiprecision::et_off>;
+using Rational = mpq_class;
 using Triple = std::array<Rational, 3>;
 using Sextuple = std::array<Rational, 6>;
 
@@ -60,11 +60,11 @@ bool inside_cone(const CertificateEdge& edge, const Contact& contact, const Qual
 void add_row(Sextuple wrench, std::vector<Sextuple>& rows, std::vector<std::size_t>& leads) {
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const Rational factor = wrench[leads[k]] / rows[k][leads[k]];
-    if (factor.is_zero()) continue;
+    if (factor == 0) continue;
     for (std::size_t i = 0; i < 6; ++i) wrench[i] -= factor * rows[k][i];
   }
   for (std::size_t i = 0; i < 6; ++i) {
-    if (wrench[i].is_zero()) continue;
+    if (wrench[i] == 0) continue;
     rows.push_back(wrench);
     leads.push_back(i);
     return;
@@ -101,7 +101,7 @@ std::string certificate_fault(const Certificate& certificate, const std::vector<
     if (rows.size() < 6) add_row(wrench, rows, leads);
   }
   for (const Rational& component : sum) {
-    if (!component.is_zero()) return "its weighted wrenches do not add up to zero";
+    if (component != 0) return "its weighted wrenches do not add up to zero";
   }
   return rows.size() == 6 ? "" : "its wrenches have rank " + std::to_string(rows.size()) + ", not 6";
 }
