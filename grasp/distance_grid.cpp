@@ -45,53 +45,27 @@ DistanceGrid::DistanceGrid(const std::function<double(const Eigen::Vector3d&)>& 
   fill(0);
 }
 
-DistanceGrid::Cell DistanceGrid::locate(const Eigen::Vector3d& p) const {
-  Cell cell{nullptr, {}, p.cwiseMax(lower_).cwiseMin(upper_)};
-  const Eigen::Vector3d scaled = (cell.inside - lower_) * cells_per_meter_;
-  std::array<int, 3> corner;
-  for (int i = 0; i < 3; ++i) {
-    corner[i] = std::clamp(static_cast<int>(scaled[i]), 0, count_[i] - 2);  // not negative: truncation is the floor
-    cell.fraction[i] = scaled[i] - corner[i];
-  }
-  cell.node = nodes_.data() + (static_cast<std::size_t>(corner[2]) * count_.y() + corner[1]) * count_.x() + corner[0];
-  return cell;
+double DistanceGrid::value_outside(const Eigen::Vector3d& p) const {
+  const Eigen::Vector3d inside = nearest(p);
+  return interpolate(locate(inside)) + (p - inside).norm();
 }
 
-double DistanceGrid::interpolate(const Cell& cell) const {
-  const Eigen::Vector3d& f = cell.fraction;
-  const std::size_t row = count_.x();
-  const std::size_t layer = row * count_.y();
-  const auto edge = [&](std::size_t i) { return cell.node[i] + f.x() * (cell.node[i + 1] - cell.node[i]); };
-  const double e00 = edge(0), e10 = edge(row), e01 = edge(layer), e11 = edge(layer + row);
-  const double low = e00 + f.y() * (e10 - e00);
-  const double high = e01 + f.y() * (e11 - e01);
-  return low + f.z() * (high - low);
-}
-
-double DistanceGrid::value(const Eigen::Vector3d& p) const {
-  const Cell cell = locate(p);
-  const double outside = (p - cell.inside).squaredNorm();
-  return interpolate(cell) + (outside > 0.0 ? std::sqrt(outside) : 0.0);
-}
-
-double DistanceGrid::bound(const Eigen::Vector3d& p) const {
-  const Cell cell = locate(p);
-  const double inside = interpolate(cell);
-  const double squared = (p - cell.inside).squaredNorm();
-  if (squared == 0.0) return inside;
-  const double outside = std::sqrt(squared);
-  return std::max(inside - outside, margin_ + outside);
+double DistanceGrid::bound_outside(const Eigen::Vector3d& p) const {
+  const Eigen::Vector3d inside = nearest(p);
+  const double outside = (p - inside).norm();
+  return std::max(interpolate(locate(inside)) - outside, margin_ + outside);
 }
 
 SignedDistance DistanceGrid::query(const Eigen::Vector3d& p) const {
-  const Cell cell = locate(p);
+  const Eigen::Vector3d inside = nearest(p);
+  const Cell cell = locate(inside);
   const Eigen::Vector3d& f = cell.fraction;
   const float* n = cell.node;
-  const std::size_t row = count_.x();
-  const std::size_t layer = row * count_.y();
+  const std::ptrdiff_t row = count_.x();
+  const std::ptrdiff_t layer = row * count_.y();
   // Along x on the four edges, then y, then z.
-  const auto edge = [&](std::size_t offset) { return n[offset] + f.x() * (n[offset + 1] - n[offset]); };
-  const auto slope = [&](std::size_t offset) { return static_cast<double>(n[offset + 1] - n[offset]); };
+  const auto edge = [&](std::ptrdiff_t offset) { return n[offset] + f.x() * (n[offset + 1] - n[offset]); };
+  const auto slope = [&](std::ptrdiff_t offset) { return static_cast<double>(n[offset + 1] - n[offset]); };
   const double e00 = edge(0), e10 = edge(row), e01 = edge(layer), e11 = edge(layer + row);
   const double low = e00 + f.y() * (e10 - e00);
   const double high = e01 + f.y() * (e11 - e01);
@@ -101,7 +75,7 @@ SignedDistance DistanceGrid::query(const Eigen::Vector3d& p) const {
       low + f.z() * (high - low),
       Eigen::Vector3d(s0 + f.z() * (s1 - s0), (1.0 - f.z()) * (e10 - e00) + f.z() * (e11 - e01), high - low) /
           spacing_};
-  const Eigen::Vector3d beyond = p - cell.inside;
+  const Eigen::Vector3d beyond = p - inside;
   const double outside = beyond.norm();
   if (outside > 0.0) {
     for (int i = 0; i < 3; ++i) result.gradient[i] = beyond[i] == 0.0 ? result.gradient[i] : 0.0;

@@ -57,10 +57,11 @@ bool clear_of_object(const ClosingScene& scene, const HandPose& pose, double cle
 /// Least distance of points to a link, exact below `bound`, else `bound`. X_LP: maps the points to the link's frame.
 double least_distance(const PointTree& points, const LinkShape& shape, const Eigen::Isometry3d& X_LP, double bound) {
   const auto rough = [&shape](const Eigen::Vector3d& p_L) { return shape.rough(p_L) - shape.error(); };
-  return points.descend(rough, X_LP, bound, [&](const Eigen::Vector3d&, const Eigen::Vector3d& p_L) {
+  const auto visit = [&](const Eigen::Vector3d&, const Eigen::Vector3d& p_L) {
     if (rough(p_L) < bound) bound = std::min(bound, shape.body.query(p_L, std::max(bound, 0.0)).value);
     return bound;
-  });
+  };
+  return points.descend(rough, X_LP, bound, visit).bound;
 }
 
 /// Name of the obstacle that the hand's points come nearest to.
@@ -142,7 +143,7 @@ double obstacle_distance(const ClosingScene& scene, const HandPose& pose, double
     const auto distance = [&](const Eigen::Vector3d& p_O) {
       return scene.target.obstacle_distance(p_O, scene.surface.link_radius[link] + horizon).value;
     };
-    least = scene.surface.shapes[link]->points.descend(
+    scene.surface.shapes[link]->points.descend(
         distance, pose.X_OH * X_HL[link], least,
         [&](const Eigen::Vector3d&, const Eigen::Vector3d& p_O) { return least = std::min(least, distance(p_O)); });
   }

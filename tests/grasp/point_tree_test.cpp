@@ -54,17 +54,17 @@ TEST(PointTree, FindsTheLeastValueOfAllPointsWithFewOfThem) {
       double bound = 1.0;
       const auto look = [&](const Vector3d& p, const Vector3d& there) {
         ++visited;
-        EXPECT_EQ(X * p, there);
+        EXPECT_EQ((X.linear() * p + X.translation()).eval(), there);
         return bound = std::min(bound, exact.signed_distance(there));
       };
       all += 2 * static_cast<std::int64_t>(tree.points().size());
       // From exact distances, and from a grid whose error is told.
       const auto distance = [&](const Vector3d& p) { return exact.signed_distance(p); };
-      EXPECT_EQ(tree.descend(distance, X, bound, look), truth);
-      EXPECT_EQ(tree.descend(distance, X, truth, look), truth);  // nothing is below the bound
+      EXPECT_EQ(tree.descend(distance, X, bound, look).bound, truth);
+      EXPECT_EQ(tree.descend(distance, X, truth, look).bound, truth);  // nothing is below the bound
       bound = 1.0;
       const auto rough = [&](const Vector3d& p) { return grid.bound(p) - grid.error() - 1e-6; };
-      EXPECT_EQ(tree.descend(rough, X, bound, look), truth);
+      EXPECT_EQ(tree.descend(rough, X, bound, look).bound, truth);
     }
   }
   EXPECT_LT(visited, all / 5);
@@ -74,7 +74,7 @@ TEST(PointTree, WithoutPointsTheBoundStays) {
   const PointTree tree;
   EXPECT_TRUE(tree.empty());
   const auto never = [](const Vector3d&, const Vector3d&) -> double { throw std::logic_error("there are no points"); };
-  EXPECT_EQ(tree.descend([](const Vector3d&) { return 0.0; }, Eigen::Isometry3d::Identity(), 0.7, never), 0.7);
+  EXPECT_EQ(tree.descend([](const Vector3d&) { return 0.0; }, Eigen::Isometry3d::Identity(), 0.7, never).bound, 0.7);
   EXPECT_TRUE(PointTree(std::vector<Vector3d>{}).empty());
 }
 
