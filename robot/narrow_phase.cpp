@@ -21,6 +21,7 @@
 #include "core/require.hpp"
 #include "robot/convex_distance.hpp"
 #include "robot/fcl_mesh.hpp"
+#include "robot/leaf_triangles.hpp"
 #include "robot/mesh_cover.hpp"
 #include "robot/solid_region.hpp"
 
@@ -40,6 +41,7 @@ struct CollisionShape::Data {
   std::shared_ptr<const TriangleMesh> mesh;            ///< null for a primitive
   std::shared_ptr<fcl::CollisionGeometryd> primitive;  ///< null for a mesh
   std::unique_ptr<const FclMeshes> fcl;                ///< null for a primitive
+  std::unique_ptr<const LeafTriangles> leaves;         ///< null for a primitive
 
   /// Of a mesh. Both take as long as reading it from its file, and many meshes are never near enough to another body to
   /// be asked: they are made when they are needed first.
@@ -125,6 +127,7 @@ std::shared_ptr<const CollisionShape::Data> make_data(const Shape& shape) {
   if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&shape)) {
     data->mesh = *mesh;
     data->fcl = std::make_unique<const FclMeshes>(**mesh);
+    data->leaves = std::make_unique<const LeafTriangles>(**mesh);
   }
   return data;
 }
@@ -249,7 +252,11 @@ bool contained(const CollisionShape& a, const Eigen::Isometry3d& X_WA, const Col
 
 bool leaves_meet(const CollisionShape& a, const Eigen::Isometry3d& X_WA, int leaf_a, const CollisionShape& b,
                  const Eigen::Isometry3d& X_WB, int leaf_b) {
-  return fcl_meet(a.data().fcl->leaf(a.cover(), leaf_a), X_WA, b.data().fcl->leaf(b.cover(), leaf_b), X_WB);
+  const SphereTree& tree_a = a.cover();
+  const SphereTree& tree_b = b.cover();
+  return leaves_meet(a.data().leaves->of(tree_a, leaf_a), tree_a.nodes[static_cast<std::size_t>(leaf_a)],
+                     b.data().leaves->of(tree_b, leaf_b), tree_b.nodes[static_cast<std::size_t>(leaf_b)],
+                     X_WA.inverse(Eigen::Isometry) * X_WB);
 }
 
 double separation(const CollisionShape& a, const Eigen::Isometry3d& X_WA, const CollisionShape& b,

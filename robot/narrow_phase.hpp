@@ -66,7 +66,7 @@ bool contained(const CollisionShape& a, const Eigen::Isometry3d& X_WA, const Col
                const Eigen::Isometry3d& X_WB);
 
 /// Its first part for two meshes, of the triangles in leaves of their covers (and some beside): FCL's verdict on each
-/// pair of triangles is the same. Throws nothing but what FCL refuses.
+/// pair of triangles.
 bool leaves_meet(const CollisionShape& a, const Eigen::Isometry3d& X_WA, int leaf_a, const CollisionShape& b,
                  const Eigen::Isometry3d& X_WB, int leaf_b);
 

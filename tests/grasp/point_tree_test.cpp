@@ -49,12 +49,13 @@ TEST(PointTree, FindsTheLeastValueOfAllPointsWithFewOfThem) {
     ASSERT_EQ(tree.points().size(), static_cast<std::size_t>(count + (count + 6) / 7));
     for (int i = 0; i < 20; ++i) {
       const Eigen::Isometry3d X = random_pose(rng);
+      const auto moved = [&X](const Vector3d& p) -> Vector3d { return X.linear() * p + X.translation(); };
       double truth = std::numeric_limits<double>::infinity();
-      for (const Vector3d& p : tree.points()) truth = std::min(truth, exact.signed_distance(X * p));
+      for (const Vector3d& p : tree.points()) truth = std::min(truth, exact.signed_distance(moved(p)));
       double bound = 1.0;
       const auto look = [&](const Vector3d& p, const Vector3d& there) {
         ++visited;
-        EXPECT_EQ((X.linear() * p + X.translation()).eval(), there);
+        EXPECT_EQ(moved(p), there);
         return bound = std::min(bound, exact.signed_distance(there));
       };
       all += 2 * static_cast<std::int64_t>(tree.points().size());
