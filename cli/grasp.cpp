@@ -215,7 +215,7 @@ int grasp(const GraspOptions& options, const Console& console) {
   const RunLog log(store, "grasp", threads);
   const auto synergies = newest_synergies(store);
   const NamedWorld world = load_world(options.robot, options.scene, options.objects);
-  require_one_arm(world, options.robot);
+  require_one_arm(world);
   require_same_joints(synergies.value, world.hand());
   require_graspable(world);
   const auto groups = chosen_groups(synergies.value, options);

@@ -248,7 +248,7 @@ int plan(const PlanOptions& options, const Console& console) {
   const int threads = thread_count(options.common.threads);
   const RunLog log(store, "plan", threads);
   const NamedWorld world = load_world(options.robot, options.scene, options.objects);
-  const Planning planning(options, world, make_query(store, world, options.robot), free_motion_reference(store));
+  const Planning planning(options, world, make_query(store, world), free_motion_reference(store));
   Json result = document("plan");
   result["warnings"] = advise(world, planning, console);
   if (planning.pairs()) {

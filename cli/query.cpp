@@ -30,11 +30,11 @@ void place(const robot::DrivenArm& arm, const Eigen::VectorXd& q_arm, const Eige
   q.segment(arm.hand.first, arm.hand.count) = q_hand;
 }
 
-/// "opponens grasp", with what tells it the arm and the object, where there is a choice.
-std::string grasp_command(const NamedWorld& world, const GraspingArm& arm, const std::string& robot_file) {
+/// The command that finds grasps for an arm, in full where there is a choice of arms.
+std::string grasp_command(const NamedWorld& world, const GraspingArm& arm) {
   if (world.arms.size() == 1) return "opponens grasp";
-  return "opponens grasp --robot " + robot_file.substr(0, robot_file.rfind('#')) + "#" + arm.name + " --object " +
-         arm.object;
+  return "opponens grasp --robot " + file_with_arm(world, arm.name) + " --scene " +
+         world.parameters.at("scene").get<std::string>() + " --object " + arm.object;
 }
 
 }  // namespace
@@ -54,7 +54,7 @@ std::vector<const Stored<Grasp>*> Query::grasps_at(int goal) const {
 
 SynergyBox Query::start_box() const { return analysis::product_box({arm_goals.size(), synergies.pre_grasp.box}); }
 
-Query make_query(const storage::Store& store, const NamedWorld& world, const std::string& robot_file) {
+Query make_query(const storage::Store& store, const NamedWorld& world) {
   auto synergies = newest_synergies(store);
   Query query;
   query.start = start_configuration(world.robot, world.scene);
@@ -64,7 +64,7 @@ Query make_query(const storage::Store& store, const NamedWorld& world, const std
     if (grasps.empty()) {
       throw InputError(store.directory().string() + ": no grasps of " + arm.object + " with " +
                        (world.arms.size() > 1 ? "arm " + arm.name + " of " : "") +
-                       "this robot, scene and the newest synergies; run: " + grasp_command(world, arm, robot_file));
+                       "this robot, scene and the newest synergies; run: " + grasp_command(world, arm));
     }
     add_grasps(query, std::move(grasps));
   }

@@ -45,7 +45,7 @@ struct Query {
 };
 
 /// No goals yet. Throws InputError when the store has no grasps of some arm for this world, or the scene no start.
-Query make_query(const storage::Store& store, const NamedWorld& world, const std::string& robot_file);
+Query make_query(const storage::Store& store, const NamedWorld& world);
 
 /// parts: one for each driven arm.
 Goal goal_of(const Query& query, const robot::RobotModel& robot, const std::vector<ArmGoal>& parts);

@@ -67,11 +67,15 @@ NamedWorld load_world(const Json& recorded) {
   return load_world(recorded.at("robot"), recorded.at("scene"), object_arguments(recorded));
 }
 
-void require_one_arm(const NamedWorld& world, const std::string& robot_file) {
+std::string file_with_arm(const NamedWorld& world, const std::string& arm) {
+  const auto robot = world.parameters.at("robot").get<std::string>();
+  return robot.substr(0, robot.size() - recorded_arm(robot).size()) + arm;
+}
+
+void require_one_arm(const NamedWorld& world) {
   if (world.arms.size() == 1) return;
-  const std::string file = robot_file.substr(0, robot_file.rfind('#'));
-  throw InputError("--robot " + robot_file + ": a grasp is of one arm; name it: " + file + "#" + world.arms[0].name +
-                   " or #" + world.arms[1].name);
+  throw InputError("--robot " + world.parameters.at("robot").get<std::string>() + ": a grasp is of one arm; name it: " +
+                   file_with_arm(world, world.arms[0].name) + " or #" + world.arms[1].name);
 }
 
 const GraspingArm& NamedWorld::one_arm() const {

@@ -55,7 +55,9 @@ NamedWorld load_world(const std::string& robot_file, const std::string& scene_fi
 /// The world that a stored object was made with, by its parameter "world".
 NamedWorld load_world(const Json& recorded);
 /// Throws InputError unless one arm is driven.
-void require_one_arm(const NamedWorld& world, const std::string& robot_file);
+void require_one_arm(const NamedWorld& world);
+/// "FILE#ARM": the world's robot with another choice of the driven arm.
+std::string file_with_arm(const NamedWorld& world, const std::string& arm);
 
 /// What the user should know about the loaded files, a sentence each: what was ignored or assumed while loading, what
 /// is wrong with the scene's meshes, and the open meshes, inside of which nothing counts as a collision.
