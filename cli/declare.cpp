@@ -12,9 +12,8 @@ namespace opponens::cli {
 namespace {
 
 template <typename Options>
-void add_world(CLI::App& app, Options& options, const char* objects_help) {
-  app.add_option("--robot", options.robot, "robot.yaml; FILE#ARM: an arm of a robot with several")
-      ->capture_default_str();
+void add_world(CLI::App& app, Options& options, const char* robot_help, const char* objects_help) {
+  app.add_option("--robot", options.robot, robot_help)->capture_default_str();
   app.add_option("--scene", options.scene, "Scene YAML")->capture_default_str();
   app.add_option("--object", options.objects, objects_help)->allow_extra_args(false);
 }
@@ -64,7 +63,8 @@ void add_threads(CLI::App& app, int& threads) {
 
 void declare_grasp(CLI::App& app, GraspOptions& options) {
   add_store(app, options.common);
-  add_world(app, options, "Body of the scene to grasp; default: the one the scene names");
+  add_world(app, options, "robot.yaml; FILE#ARM: an arm of a robot with several",
+            "Body of the scene to grasp; default: the one the scene names");
   add_seed(app, options.common.seed);
   add_threads(app, options.common.threads);
   app.add_option("--group", options.group, "Synergy group, or all")->capture_default_str();
@@ -104,9 +104,9 @@ void declare_grasp(CLI::App& app, GraspOptions& options) {
 void declare_plan(CLI::App& app, PlanOptions& options) {
   add_store(app, options.common);
   add_world(
-      app, options,
-      "Body of the scene to grasp, of every arm or, as ARM=NAME, of one (FILE#both; may be repeated); default: the "
-      "one the scene names");
+      app, options, "robot.yaml; FILE#ARM: an arm of a robot with several; FILE#both: both at once",
+      "Body of the scene to grasp; with FILE#both of both arms, or of one as ARM=NAME (may be repeated); default: "
+      "the one the scene names");
   add_seed(app, options.common.seed);
   add_threads(app, options.common.threads);
   app.add_option("--planner", options.planner,

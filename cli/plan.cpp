@@ -91,7 +91,6 @@ Json run_json(const Run& run, const Planning& planning, const NamedWorld& world)
                {"human_likeness_all", run.human_likeness},
                {"goals_refused", planned.goals_refused},
                {"diagnostics", diagnostics_json(run, planning)}};
-  if (reached.size() > 1) json["goals"] = Json::array();
   for (std::size_t i = 0; reached.size() > 1 && i < reached.size(); ++i) {
     json["goals"].push_back({{"arm", world.arms[i].name}, {"grasp", reached[i]->id}});
   }

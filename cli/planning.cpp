@@ -159,11 +159,12 @@ std::optional<GoalFault> Planning::fault_of(const Goal& goal) const {
   return GoalFault{"in collision while closing", std::move(bodies), true};
 }
 
-/// A sentence for when no goal is left to search for; empty: the planner's own will do.
+/// Why there is no goal to search for.
 std::string Planning::no_goals() const {
   if (!pairs_) {
     return "of " + std::to_string(goals_left_out_) + " goals none has a valid closing segment at this resolution";
   }
+  if (pairs_->possible == 0) return "the grasps of one arm have no arm solution";
   return "no pair of grasps fits together: " + left_out_words(*pairs_) +
          "; more grasps of each arm (opponens grasp --count), or objects that stand further apart, may help";
 }
