@@ -8,7 +8,7 @@ import shutil
 import tempfile
 import unittest
 
-from support import analysed_store, forge, must, run
+from support import SOURCE, analysed_store, forge, must, run
 
 ROBOT = "models/dual_ur5_allegro/dual_ur5_allegro.yaml"
 
@@ -64,6 +64,8 @@ class DualArm(unittest.TestCase):
         for words in ("no pair of grasps fits together", "in collision", "most often", "opponens grasp --count"):
             self.assertIn(words, answer["runs"][0]["detail"])
         self.assertIn("pairs of grasps left out", err)
+        must("report", "--store", self.store, "--out", report)
+        self.assertIn("no pair of grasps fits together", report.read_text())
 
     def test_refused(self):
         refuse(self, ["#both", "one arm", "#right", "#left"], "grasp", *self.world("#both"))
@@ -141,6 +143,26 @@ class BothArms(unittest.TestCase):
             must("export", "--store", store, planned["ids"][0], "--format", form, "--out", out)
         self.assertEqual(json.loads(out.read_text())["joint_names"], names)
         self.assertEqual(must("stale", "--store", store)["stale"], [])
+
+    def test_both_hands_at_one_object(self):
+        text = (SOURCE / self.world("")[-1]).read_text()
+        bodies, shelf = text.index("  - name: right_cylinder"), text.index("  - name: shelf")
+        scene = pathlib.Path(self.folder.name) / "bar.yaml"
+        scene.write_text(text[:bodies].replace("object: right_cylinder", "object: bar") + """\
+  - name: bar
+    pose: {xyz: [-0.35, 0.9, 1.22], rpy: [0, 1.5707963267948966, 0]}
+    geometry:
+      - revolution: {profile: [[0.025, 0], [0.025, 0.2], [0.025, 0.5], [0.025, 0.7]], segments: 48}
+""" + text[shelf:])
+        store = self.copied("bar")
+        for arm in ("right", "left"):
+            must("grasp", *self.world(store, "#" + arm)[:-1], scene, "--group", "1", "--count", 4, "--max-trials", 1500)
+        code, out, err = run("plan", *self.world(store)[:-1], scene, "--json")
+        self.assertEqual(code, 0, err)
+        planned = json.loads(out)
+        self.assertEqual(planned["pairs"]["asked"], planned["pairs"]["kept"]
+                         + sum(one["count"] for one in planned["pairs"]["left_out"]))
+        self.assertEqual(must("verify", "--store", store)["failed"], [])
 
     def test_pairs_at_most(self):
         planned = must("plan", *self.world(self.copied("few")), *self.objects, "--pairs", 2, "--max-checks", 300,
