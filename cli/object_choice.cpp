@@ -21,8 +21,13 @@ using Choice = std::map<std::string, std::string>;
 
 void choose(Choice& choice, const std::string& arm, const std::string& object, const std::string& argument) {
   if (choice.emplace(arm, object).second) return;
-  throw InputError("--object " + argument + ": a second object" + (arm.empty() ? "" : " for arm " + arm) + ", after " +
-                   choice.at(arm));
+  const std::string of_arm = arm.empty() ? "" : " for arm " + arm;
+  throw InputError("--object " + argument + ": a second object" + of_arm + ", after " + choice.at(arm));
+}
+
+void require_arm(const std::string& arm, const std::vector<std::string>& arms, const std::string& argument) {
+  if (std::find(arms.begin(), arms.end(), arm) != arms.end()) return;
+  throw InputError("--object " + argument + ": no driven arm '" + arm + "', expected one of " + list_of(arms));
 }
 
 Choice read_arguments(const std::vector<std::string>& arguments, const std::vector<std::string>& arms) {
@@ -31,9 +36,7 @@ Choice read_arguments(const std::vector<std::string>& arguments, const std::vect
     // With one arm the whole of it is the name, whatever letters that has.
     const std::size_t equals = arms.size() > 1 ? argument.find('=') : std::string::npos;
     const std::string arm = equals == std::string::npos ? "" : argument.substr(0, equals);
-    if (equals != std::string::npos && std::find(arms.begin(), arms.end(), arm) == arms.end()) {
-      throw InputError("--object " + argument + ": no driven arm '" + arm + "', expected one of " + list_of(arms));
-    }
+    if (equals != std::string::npos) require_arm(arm, arms, argument);
     choose(choice, arm, equals == std::string::npos ? argument : argument.substr(equals + 1), argument);
   }
   return choice;

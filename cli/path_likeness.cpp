@@ -83,6 +83,7 @@ Json likeness_of_path(const Eigen::MatrixXd& planned, const Eigen::MatrixXd& fin
     list.push_back({{"of", "planned"}, {"value", nullptr}, {"reference", "none in the store"}});
   }
   std::vector<LikenessReference> phases;
+  phases.reserve(groups.size());
   for (const SynergyGroup* group : groups) phases.push_back(grasp_phase_reference(*group));
   add(phases);
   return list;

@@ -238,6 +238,7 @@ void Planning::finish(Run& run) const {
 
 std::vector<const SynergyGroup*> Planning::groups_of(const std::vector<std::size_t>& grasps) const {
   std::vector<const SynergyGroup*> groups;
+  groups.reserve(grasps.size());
   for (const std::size_t i : grasps) groups.push_back(&group_named(query_.synergies, query_.grasps[i].value.group));
   return groups;
 }
