@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/synergy_box.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include <boost/math/special_functions/erf.hpp>
 
@@ -23,6 +25,12 @@ void check_point(const SynergyBox& box, const Eigen::VectorXd& q) {
   require(q.size() == box.center.size() && box.scale.size() == box.center.size(),
           "synergy box: the configuration has " + std::to_string(q.size()) + " joints, the box " +
               std::to_string(box.center.size()));
+}
+
+Eigen::VectorXd joined(const Eigen::VectorXd& first, const Eigen::VectorXd& second) {
+  Eigen::VectorXd both(first.size() + second.size());
+  both << first, second;
+  return both;
 }
 
 }  // namespace
@@ -68,6 +76,26 @@ SynergyBox make_box(const SynergyBasis& basis, const Eigen::VectorXd& scale, dou
   box.alpha = alpha;
   box.beta = beta;
   return box;
+}
+
+SynergyBox product_box(const std::vector<SynergyBox>& boxes) {
+  require(!boxes.empty(), "product_box: there is no box");
+  SynergyBox product = boxes.front();
+  for (auto box = boxes.begin() + 1; box != boxes.end(); ++box) {
+    const Eigen::Index n = product.center.size();
+    const Eigen::Index k = product.half_width.size();
+    SynergyBox both;
+    both.center = joined(product.center, box->center);
+    both.axes = Eigen::MatrixXd::Zero(n + box->axes.rows(), k + box->axes.cols());
+    both.axes.topLeftCorner(n, k) = product.axes;
+    both.axes.bottomRightCorner(box->axes.rows(), box->axes.cols()) = box->axes;
+    both.half_width = joined(product.half_width, box->half_width);
+    both.scale = joined(product.scale, box->scale);
+    both.alpha = 1.0 - (1.0 - product.alpha) * (1.0 - box->alpha);
+    both.beta = std::max(product.beta, box->beta);
+    product = std::move(both);
+  }
+  return product;
 }
 
 Eigen::VectorXd coordinates(const SynergyBox& box, const Eigen::VectorXd& q) {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <vector>
+
 #include <Eigen/Core>
 
 #include "core/synergies.hpp"
@@ -25,6 +27,11 @@ int synergies_needed(const Eigen::VectorXd& variance, double beta);
 /// dof_effective: n of the root. scale: [n] rad per scaled unit.
 SynergyBox make_box(const SynergyBasis& basis, const Eigen::VectorXd& scale, double alpha, double beta, BoxRoot root,
                     int dof_effective);
+
+/// The box of several hands at once, their joints one after another: the configurations whose every part lies in its
+/// own box. Axes are block-diagonal, so PROJECT is that of each hand alone. At least one box. alpha: of hands that move
+/// independently; beta: the largest, since a box does not tell the variance that it is a share of.
+SynergyBox product_box(const std::vector<SynergyBox>& boxes);
 
 /// Probability that one standard normal coordinate lies inside the half width: the root itself.
 double axis_probability(double alpha, BoxRoot root, int n, int k);

@@ -66,7 +66,7 @@ struct GraspOptions {
   Common common{};
   std::string robot = "models/ur5_allegro/ur5_allegro_right.yaml";
   std::string scene = "models/scenes/bottle_shelf.yaml";
-  std::string object{};
+  std::vector<std::string> objects{};  ///< to grasp: one, as the scene calls it; empty: the scene's own
   std::string group = "all";
   int count = 5;
   int max_trials = 2000;
@@ -93,7 +93,8 @@ struct PlanOptions {
   Common common{};
   std::string robot = "models/ur5_allegro/ur5_allegro_right.yaml";
   std::string scene = "models/scenes/bottle_shelf.yaml";
-  std::string object{};
+  std::vector<std::string> objects{};  ///< NAME, or ARM=NAME; empty: the scene's own
+  int pairs = 64;                      ///< goals of two arms together that are kept at most
   std::string planner = "synergy";
   int runs = 1;
   std::optional<double> time_limit{};  ///< s

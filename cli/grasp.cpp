@@ -53,11 +53,11 @@ struct GraspTally {
 /// Quality under errors of every grasp, each from a stream of its own.
 void add_robust_quality(const Task& task, const std::string& name, std::vector<Grasp>& grasps) {
   if (task.options.noise.samples == 0 || grasps.empty()) return;
-  const auto& geometry = task.world.scene.body(task.world.object).geometry;
+  const auto& geometry = task.world.scene.body(task.world.object()).geometry;
   const robot::MeshDistance object(std::make_shared<const robot::TriangleMesh>(robot::merge(geometry)));
   for (std::size_t i = 0; i < grasps.size(); ++i) {
     Rng rng = stream(task.options.common.seed, "robust/" + name + "/" + std::to_string(i));
-    grasps[i].robust = grasp::robust_quality(task.world.hand, object, grasps[i], task.options.noise, rng);
+    grasps[i].robust = grasp::robust_quality(task.world.hand(), object, grasps[i], task.options.noise, rng);
   }
 }
 
@@ -79,11 +79,11 @@ void store_found(const Task& task, const std::string& name, const grasp::SearchR
   auto ids = task.store.commit(records);
   ids.pop_back();
   for (std::size_t i = 0; i < ids.size(); ++i) {
-    tally.grasps.push_back(grasp_json(ids[i], found.grasps[i], task.world.hand.joint_names()));
+    tally.grasps.push_back(grasp_json(ids[i], found.grasps[i], task.world.hand().joint_names()));
     tally.ids.push_back(ids[i]);
   }
   Json shown = summary;
-  shown["causes"] = causes_json(causes_of(found.rejected, task.world.scene, task.world.object), found.trials);
+  shown["causes"] = causes_json(causes_of(found.rejected, task.world.scene, task.world.object()), found.trials);
   tally.groups.push_back(shown);
   tally.trials += found.trials;
   tally.evaluations += found.evaluations;
@@ -91,7 +91,7 @@ void store_found(const Task& task, const std::string& name, const grasp::SearchR
 }
 
 void say_none(const Task& task, const std::string& what, const grasp::SearchResult& found) {
-  const auto causes = causes_of(found.rejected, task.world.scene, task.world.object);
+  const auto causes = causes_of(found.rejected, task.world.scene, task.world.object());
   task.console.say(what + ": no grasp in " + std::to_string(found.trials) +
                    (found.trials == 1 ? " trial: " : " trials: ") + shares(causes, found.trials));
   if (!causes.empty() && !causes.front().advice.empty()) task.console.say("  to try first: " + causes.front().advice);
@@ -153,11 +153,11 @@ void import_file(const Task& task, const std::vector<SynergyGroup>& groups, Gras
   const ImportedPostures imported = import_grasps(file, task.world);
   std::set<std::string> others;
   for (const auto& one : imported.postures) {
-    if (one.object && *one.object != task.world.object) others.insert(*one.object);
+    if (one.object && *one.object != task.world.object()) others.insert(*one.object);
   }
   for (const std::string& other : others) {
-    task.console.advise(file.string() + ": its grasps are of " + other + ", not of " + task.world.object +
-                        "; they are taken in the frame of " + task.world.object);
+    task.console.advise(file.string() + ": its grasps are of " + other + ", not of " + task.world.object() +
+                        "; they are taken in the frame of " + task.world.object());
   }
   std::vector<grasp::HandPose> postures;
   for (const auto& one : imported.postures) postures.push_back(one.posture);
@@ -187,12 +187,12 @@ void import_file(const Task& task, const std::vector<SynergyGroup>& groups, Gras
 int finish(const GraspOptions& options, const Console& console, const NamedWorld& world, const GraspTally& tally,
            const RunLog& log, const std::vector<std::string>& warnings) {
   log.finish(tally.ids);
-  const auto causes = causes_of(tally.rejected, world.scene, world.object);
+  const auto causes = causes_of(tally.rejected, world.scene, world.object());
   Json answer = nullptr;
   if (tally.ids.empty())
     answer = tally.answer.empty() ? std::string("no grasp: ").append(shares(causes, tally.trials)) : tally.answer;
   Json result = document("grasp");
-  result.update({{"object", world.object},
+  result.update({{"object", world.object()},
                  {"grasps", tally.grasps},
                  {"groups", tally.groups},
                  {"trials", tally.trials},
@@ -214,8 +214,9 @@ int grasp(const GraspOptions& options, const Console& console) {
   const int threads = thread_count(options.common.threads);
   const RunLog log(store, "grasp", threads);
   const auto synergies = newest_synergies(store);
-  const NamedWorld world = load_world(options.robot, options.scene, options.object);
-  require_same_joints(synergies.value, world.hand);
+  const NamedWorld world = load_world(options.robot, options.scene, options.objects);
+  require_one_arm(world);
+  require_same_joints(synergies.value, world.hand());
   require_graspable(world);
   const auto groups = chosen_groups(synergies.value, options);
   const Reach reach(world, options.max_penetration);
@@ -227,13 +228,13 @@ int grasp(const GraspOptions& options, const Console& console) {
     tally.answer = *far;
     return finish(options, console, world, tally, log, warnings);
   }
-  const grasp::SearchWorld search_world = grasp::make_search_world(world.hand, world.scene, world.object, threads);
+  const grasp::SearchWorld search_world = grasp::make_search_world(world.hand(), world.scene, world.object(), threads);
   const Task task{options, console, world, synergies, reach, search_settings(options, threads), search_world, store};
   if (!options.import.empty()) {
     import_file(task, groups, tally);
   } else if (options.free_joints) {
-    grasp::FreeJoints free = grasp::free_joints(world.hand);
-    if (options.tips) free.group.box = grasp::free_box(world.hand);  // tips are placed, they do not close
+    grasp::FreeJoints free = grasp::free_joints(world.hand());
+    if (options.tips) free.group.box = grasp::free_box(world.hand());  // tips are placed, they do not close
     search_group(task, free.group, free.pre_grasp, groups, tally);
   } else {
     for (const auto& group : groups) search_group(task, group, synergies.value.pre_grasp.box, groups, tally);

@@ -132,16 +132,16 @@ std::optional<int> first_moved_link(const robot::RobotModel& robot) {
 }  // namespace
 
 void require_graspable(const NamedWorld& world) {
-  if (world.hand.description().contact_points.empty()) {
+  if (world.hand().description().contact_points.empty()) {
     throw InputError("the hand of " + world.parameters.at("robot").get<std::string>() +
                      " has no contact_points, so nothing says where it should touch; opponens robot FILE "
                      "--propose-contacts finds some");
   }
-  const robot::SceneBody& object = world.scene.body(world.object);
-  if (object.geometry.empty()) throw InputError("object " + world.object + " has no geometry in the scene");
+  const robot::SceneBody& object = world.scene.body(world.object());
+  if (object.geometry.empty()) throw InputError("object " + world.object() + " has no geometry in the scene");
   const robot::MeshReport report = robot::check_mesh(robot::merge(object.geometry));
-  require_usual_size(world.object, report);
-  require_closed(world.object, object.geometry);
+  require_usual_size(world.object(), report);
+  require_closed(world.object(), object.geometry);
   require_apart(world.scene, object, std::max(kLeastSpacing, report.extent.maxCoeff() / kSamplesAcross));
 }
 
@@ -154,15 +154,15 @@ std::optional<std::string> out_of_reach(const NamedWorld& world) {
   const Eigen::Vector3d p_RF =
       world.robot.link_poses(Eigen::VectorXd::Zero(world.robot.dof()))[static_cast<std::size_t>(*first)].translation();
   const Eigen::Isometry3d X_RO = world.X_RO();
-  const robot::TriangleMesh mesh = robot::merge(world.scene.body(world.object).geometry);
+  const robot::TriangleMesh mesh = robot::merge(world.scene.body(world.object()).geometry);
   const Eigen::Matrix3Xd vertices = (X_RO.linear() * mesh.vertices).colwise() + X_RO.translation();
   const Eigen::AlignedBox3d box(vertices.rowwise().minCoeff(), vertices.rowwise().maxCoeff());
   const double apart = box.exteriorDistance(p_RF);
-  const double length = longest_chain(world.robot, world.robot.palm(), *first) + hand_length(world.hand);
+  const double length = longest_chain(world.robot, world.robot.palm(), *first) + hand_length(world.hand());
   if (apart <= length) return std::nullopt;
   return formatted(
       "object %s is out of reach: %.2f m from the arm's first joint, and arm and hand are at most %.2f m long",
-      world.object.c_str(), apart, length);
+      world.object().c_str(), apart, length);
 }
 
 }  // namespace opponens::cli

@@ -12,7 +12,7 @@ Reach::Reach(const NamedWorld& world, double max_penetration)
       kinematics_(robot::make_inverse_kinematics(world.robot)),
       free_space_(world.robot, world.scene),
       closing_(world.robot, world.scene, world.hand_object_pairs()),
-      depth_(world.robot, world.scene, world.object, world.hand_links()),
+      depth_(world.robot, world.scene, world.touching()),
       X_RO_(world.X_RO()) {}
 
 std::string Reach::operator()(Grasp& grasp) const {

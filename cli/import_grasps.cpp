@@ -187,7 +187,7 @@ ImportedPostures from_frogger(const Json& json, const std::string& file, const N
   for (const Json& one : json.at("grasps")) {
     const Entry entry(file, numbered(result.postures.size()), one);
     const Eigen::Isometry3d X_OB = entry.pose(entry.field("X_object_handbase"), "X_object_handbase");
-    const Eigen::VectorXd q = entry.joints(entry.named(names, entry.numbers("hand_q"), "hand_q"), world.hand);
+    const Eigen::VectorXd q = entry.joints(entry.named(names, entry.numbers("hand_q"), "hand_q"), world.hand());
     result.postures.push_back({entry.name(), {X_OB * X_BH, q}, object_of(one, json)});
   }
   return result;
@@ -203,7 +203,7 @@ ImportedPostures from_document(const Json& json, const std::string& file, const 
     if (!good) entry.fail("field 'joints': expected {name: rad}");
     result.postures.push_back(
         {entry.name(),
-         {entry.pose(entry.field("X_OH"), "X_OH"), entry.joints(joints.get<Numbers>(), world.hand)},
+         {entry.pose(entry.field("X_OH"), "X_OH"), entry.joints(joints.get<Numbers>(), world.hand())},
          object_of(one, json)});
   }
   return result;
@@ -229,7 +229,7 @@ ImportedPostures from_export(const Json& json, const std::string& file, const Na
     const Json& origin = entry.field("provenance");
     const Json& made_for = origin.at("parameters").at("world");
     const auto set = known.find(origin.at("inputs").at(0).get<std::string>());
-    std::vector<std::string> names = world.hand.joint_names();
+    std::vector<std::string> names = world.hand().joint_names();
     if (set != known.end()) {
       names = set->second;
     } else if (made_for.at("robot") != world.parameters.at("robot")) {
@@ -239,7 +239,7 @@ ImportedPostures from_export(const Json& json, const std::string& file, const Na
     const std::vector<double> q = entry.numbers(fields.at("q_grasp"), "q_grasp");
     result.postures.push_back(
         {entry.name(),
-         {entry.pose(fields.at("X_OH"), "X_OH"), entry.joints(entry.named(names, q, "q_grasp"), world.hand)},
+         {entry.pose(fields.at("X_OH"), "X_OH"), entry.joints(entry.named(names, q, "q_grasp"), world.hand())},
          object_of(made_for, json)});
   }
   return result;

@@ -10,6 +10,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/json.hpp"
+#include "cli/path_likeness.hpp"
 #include "cli/plan_diagnostics.hpp"
 #include "cli/planning.hpp"
 #include "cli/stored.hpp"
@@ -17,6 +18,8 @@
 
 namespace opponens::cli {
 namespace {
+
+using Reached = std::vector<const Stored<Grasp>*>;  ///< [driven arms]
 
 /// Runs are independent of each other, so they may be spread over threads in any way. Those that were finished when the
 /// user interrupted are returned, in the order of their seeds. What the interrupted ones had found is said.
@@ -60,35 +63,38 @@ std::vector<Run> run_all(const Planning& planning, const PlanOptions& options, i
   return finished;
 }
 
-Json run_json(const Run& run, const Planning& planning) {
-  const Query& query = planning.query();
+Json run_json(const Run& run, const Planning& planning, const NamedWorld& world) {
   const auto& planned = run.planned;
   const bool solved = planned.status == PlanStatus::solved;
   const Json likeness = solved ? run.human_likeness.front() : Json{{"value", nullptr}, {"reference", nullptr}};
-  return {{"seed", run.seed},
-          {"status", status_name(planned.status)},
-          {"detail", planned.detail},
-          {"goal",
-           solved ? Json(query.grasps[query.grasp_of_goal[static_cast<std::size_t>(planned.goal)]].id) : Json(nullptr)},
-          {"goal_index", solved ? planned.goal : -1},
-          {"iterations", planned.iterations},
-          {"extends", planned.extends},
-          {"extends_grown", planned.extends_grown},
-          {"collision_checks", planned.collision_checks},
-          {"valid_segments",
-           planned.extends > 0 ? Json(static_cast<double>(planned.extends_grown) / static_cast<double>(planned.extends))
-                               : Json(nullptr)},
-          {"length_rad", solved ? Json(planned.length) : Json(nullptr)},
-          {"length_l1_rad", solved ? Json(planned.length_l1) : Json(nullptr)},
-          {"shortened_length_rad", solved ? Json(run.length) : Json(nullptr)},
-          {"duration_s", solved ? Json(run.trajectory.times(run.trajectory.times.size() - 1)) : Json(nullptr)},
-          {"stops", solved ? Json(run.stops) : Json(nullptr)},
-          {"box_distance", run.box_distance},
-          {"human_likeness", likeness.at("value")},
-          {"human_likeness_reference", likeness.at("reference")},
-          {"human_likeness_all", run.human_likeness},
-          {"goals_refused", planned.goals_refused},
-          {"diagnostics", diagnostics_json(run, planning)}};
+  const Reached reached = solved ? planning.query().grasps_at(planned.goal) : Reached();
+  Json json = {{"seed", run.seed},
+               {"status", status_name(planned.status)},
+               {"detail", planned.detail},
+               {"goal", solved ? Json(reached.front()->id) : Json(nullptr)},
+               {"goal_index", solved ? planned.goal : -1},
+               {"iterations", planned.iterations},
+               {"extends", planned.extends},
+               {"extends_grown", planned.extends_grown},
+               {"collision_checks", planned.collision_checks},
+               {"valid_segments", planned.extends > 0 ? Json(static_cast<double>(planned.extends_grown) /
+                                                             static_cast<double>(planned.extends))
+                                                      : Json(nullptr)},
+               {"length_rad", solved ? Json(planned.length) : Json(nullptr)},
+               {"length_l1_rad", solved ? Json(planned.length_l1) : Json(nullptr)},
+               {"shortened_length_rad", solved ? Json(run.length) : Json(nullptr)},
+               {"duration_s", solved ? Json(run.trajectory.times(run.trajectory.times.size() - 1)) : Json(nullptr)},
+               {"stops", solved ? Json(run.stops) : Json(nullptr)},
+               {"box_distance", run.box_distance},
+               {"human_likeness", likeness.at("value")},
+               {"human_likeness_reference", likeness.at("reference")},
+               {"human_likeness_all", run.human_likeness},
+               {"goals_refused", planned.goals_refused},
+               {"diagnostics", diagnostics_json(run, planning)}};
+  for (std::size_t i = 0; reached.size() > 1 && i < reached.size(); ++i) {
+    json["goals"].push_back({{"arm", world.arms[i].name}, {"grasp", reached[i]->id}});
+  }
+  return json;
 }
 
 Json parameters_json(const PlanOptions& options, const NamedWorld& world) {
@@ -103,6 +109,7 @@ Json parameters_json(const PlanOptions& options, const NamedWorld& world) {
   const auto add = [&](const char* name, const std::optional<double>& own) {
     if (own) parameters[name] = *own;
   };
+  if (world.arms.size() > 1) parameters["pairs"] = options.pairs;
   add("arm_step", options.own_step.arm);
   add("hand_step", options.own_step.hand);
   add("arm_resolution", options.own_resolution.arm);
@@ -110,18 +117,30 @@ Json parameters_json(const PlanOptions& options, const NamedWorld& world) {
   return parameters;
 }
 
+/// Names the grasps that a path reaches: the first arm's in goal_grasp, each further arm's in a field of its own.
+void add_goal_grasps(storage::Record& record, const Reached& reached, const NamedWorld& world) {
+  record.fields["goal_grasp"] = reached.front()->id;
+  for (std::size_t i = 0; i < reached.size(); ++i) {
+    const GraspingArm& arm = world.arms[i];
+    if (i > 0) record.fields[goal_grasp_field(arm.name)] = reached[i]->id;
+    record.name += (i > 0 ? " and " : "") + arm.object + " by group " + reached[i]->value.group;
+  }
+}
+
 storage::Record run_record(const Run& run, const Query& query, const storage::Provenance& origin,
-                           const std::string& object) {
-  const auto& grasp = query.grasps[query.grasp_of_goal[static_cast<std::size_t>(run.planned.goal)]];
+                           const NamedWorld& world) {
+  const Reached reached = query.grasps_at(run.planned.goal);
   auto record = storage::encode(run.planned, origin);
   record.provenance.seed = run.seed;
-  record.provenance.inputs = {grasp.id};
+  record.provenance.inputs.clear();
+  for (const auto* grasp : reached) record.provenance.inputs.push_back(grasp->id);
   for (const auto& other : query.grasps) {
-    if (other.id != grasp.id) record.provenance.inputs.push_back(other.id);
+    if (std::find(reached.begin(), reached.end(), &other) == reached.end())
+      record.provenance.inputs.push_back(other.id);
   }
   record.kind = kPath;
-  record.name = object + " by group " + grasp.value.group;
-  record.fields["goal_grasp"] = grasp.id;
+  record.name.clear();
+  add_goal_grasps(record, reached, world);
   record.fields["motion"] = run.motion.waypoints;
   record.fields["times"] = run.trajectory.times;
   record.fields["velocities"] = run.trajectory.velocities;
@@ -132,22 +151,30 @@ storage::Record run_record(const Run& run, const Query& query, const storage::Pr
   return record;
 }
 
-void say_run(const Console& console, const Run& run, const Planning& planning) {
-  const Query& query = planning.query();
+/// "a grasp of group 1", or "grasps of groups 1 (right) and 3 (left)".
+std::string goal_words(const Reached& reached, const NamedWorld& world) {
+  if (reached.size() == 1) return "a grasp of group " + reached.front()->value.group;
+  std::string words;
+  for (std::size_t i = 0; i < reached.size(); ++i) {
+    words += (i == 0 ? "grasps of groups " : " and ") + reached[i]->value.group + " (" + world.arms[i].name + ")";
+  }
+  return words;
+}
+
+void say_run(const Console& console, const Run& run, const Planning& planning, const NamedWorld& world) {
   if (run.planned.status != PlanStatus::solved) {
     say_failure(console, run, planning);
     return;
   }
   char text[320];
   std::snprintf(text, sizeof text,
-                "seed %llu: reached a grasp of group %s; %lld iterations, %lld collision checks; length %.2f rad as "
+                "; %lld iterations, %lld collision checks; length %.2f rad as "
                 "planned (%.2f rad as a sum over joints), %.2f rad shortened; %.1f s long",
-                static_cast<unsigned long long>(run.seed),
-                query.grasps[query.grasp_of_goal[static_cast<std::size_t>(run.planned.goal)]].value.group.c_str(),
                 static_cast<long long>(run.planned.iterations), static_cast<long long>(run.planned.collision_checks),
                 run.planned.length, run.planned.length_l1, run.length,
                 run.trajectory.times(run.trajectory.times.size() - 1));
-  console.say(text);
+  console.say("seed " + std::to_string(run.seed) + ": reached " +
+              goal_words(planning.query().grasps_at(run.planned.goal), world) + text);
   say_diagnostics(console, run, planning);
 }
 
@@ -171,10 +198,10 @@ std::vector<storage::Record> records_of(const std::vector<Run>& runs, const Plan
   std::vector<storage::Record> records;
   Json all = Json::array();
   for (const auto& run : runs) {
-    all.push_back(run_json(run, planning));
+    all.push_back(run_json(run, planning, world));
     all.back()["path"] = nullptr;
     if (run.planned.status != PlanStatus::solved) continue;
-    records.push_back(run_record(run, query, origin, world.object));
+    records.push_back(run_record(run, query, origin, world));
     all.back()["path"] = storage::content_hash(records.back());
   }
   records.push_back({kPlanRuns, options.planner, origin, {{"runs", all.dump()}}});
@@ -194,6 +221,9 @@ Json advise(const NamedWorld& world, const Planning& planning, const Console& co
     warnings.push_back(std::to_string(count) + " of " + std::to_string(count + planning.query().goals.size()) +
                        " goals left out: their closing segment is not valid at this resolution");
   }
+  if (planning.pairs()) {
+    if (auto words = left_out_words(*planning.pairs()); !words.empty()) warnings.push_back(std::move(words));
+  }
   if (!planning.keeps_clearance()) {
     warnings.emplace_back(
         "at the start something is nearer than the clearance of 0.6 mm: such pairs keep only nine tenths of what they "
@@ -203,16 +233,27 @@ Json advise(const NamedWorld& world, const Planning& planning, const Console& co
   return warnings;
 }
 
+void say_pairs(const PairTally& tally, const Console& console) {
+  console.say(
+      std::to_string(tally.kept) + " pairs of grasps are goals, of " + std::to_string(tally.possible) +
+      " possible ones" +
+      (tally.asked < tally.possible ? ", of which the first " + std::to_string(tally.asked) + " were asked" : ""));
+}
+
 }  // namespace
 
 int plan(const PlanOptions& options, const Console& console) {
   storage::Store store(options.common.store, false);
   const int threads = thread_count(options.common.threads);
   const RunLog log(store, "plan", threads);
-  const NamedWorld world = load_world(options.robot, options.scene, options.object);
+  const NamedWorld world = load_world(options.robot, options.scene, options.objects);
   const Planning planning(options, world, make_query(store, world), free_motion_reference(store));
   Json result = document("plan");
   result["warnings"] = advise(world, planning, console);
+  if (planning.pairs()) {
+    result["pairs"] = pairs_json(*planning.pairs());
+    say_pairs(*planning.pairs(), console);
+  }
   Progress progress(console, "planning");
   const auto runs = run_all(planning, options, threads, progress, console);
   if (runs.empty()) throw Interrupted();
@@ -226,9 +267,9 @@ int plan(const PlanOptions& options, const Console& console) {
   result["runs"] = Json::array();
   const Run* shown = nullptr;
   for (const auto& run : runs) {
-    result["runs"].push_back(run_json(run, planning));
+    result["runs"].push_back(run_json(run, planning, world));
     result["runs"].back()["cpu_seconds"] = run.cpu_seconds;
-    say_run(console, run, planning);
+    say_run(console, run, planning, world);
     if (shown == nullptr && run.planned.status == PlanStatus::solved) shown = &run;
   }
   result["path"] = shown == nullptr ? Json(nullptr) : path_json(*shown);

@@ -16,13 +16,12 @@ namespace {
 /// In the order of motion::GoalFate.
 constexpr std::array<std::string_view, 4> kFates{"rooted", "outside_limits", "in_collision", "not_joined"};
 
-const Stored<Grasp>& grasp_of(const Query& query, int goal) {
-  return query.grasps[query.grasp_of_goal[static_cast<std::size_t>(goal)]];
-}
-
 std::string goal_name(const Query& query, int goal) {
-  const auto& grasp = grasp_of(query, goal);
-  return "goal " + std::to_string(goal) + " (grasp " + short_id(grasp.id) + " of group " + grasp.value.group + ")";
+  std::string grasps;
+  for (const auto* grasp : query.grasps_at(goal)) {
+    grasps += (grasps.empty() ? "grasp " : " and ") + short_id(grasp->id) + " of group " + grasp->value.group;
+  }
+  return "goal " + std::to_string(goal) + " (" + grasps + ")";
 }
 
 Json pair_json(const motion::NamePair& pair) { return Json::array({pair.first, pair.second}); }
@@ -40,12 +39,15 @@ Json outside_json(const std::vector<motion::LimitExcess>& outside) {
 }
 
 Json goal_json(const motion::GoalDiagnosis& goal, const Query& query) {
-  return {{"goal_index", goal.goal},
-          {"grasp", grasp_of(query, goal.goal).id},
-          {"fate", kFates[static_cast<std::size_t>(goal.fate)]},
-          {"outside", outside_json(goal.outside)},
-          {"pairs", pairs_json(goal.pairs)},
-          {"vertices", goal.vertices}};
+  const auto reached = query.grasps_at(goal.goal);
+  Json json = {{"goal_index", goal.goal},
+               {"grasp", reached.front()->id},
+               {"fate", kFates[static_cast<std::size_t>(goal.fate)]},
+               {"outside", outside_json(goal.outside)},
+               {"pairs", pairs_json(goal.pairs)},
+               {"vertices", goal.vertices}};
+  for (std::size_t i = 0; reached.size() > 1 && i < reached.size(); ++i) json["grasps"].push_back(reached[i]->id);
+  return json;
 }
 
 Json start_pairs_json(const motion::PlanDiagnostics& why, const Planning& planning) {

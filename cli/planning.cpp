@@ -6,6 +6,7 @@
 #include <ctime>
 #include <utility>
 
+#include "cli/path_likeness.hpp"
 #include "core/require.hpp"
 #include "motion/blended_path.hpp"
 #include "motion/closing_segment.hpp"
@@ -22,16 +23,8 @@
 namespace opponens::cli {
 namespace {
 
-using analysis::LikenessReference;
-
 /// m: nothing further away is asked about when a path is smoothed.
 constexpr double kSmoothingReach = 0.011;
-
-/// Covariance of a group's grasp phase, in radians.
-LikenessReference grasp_phase_reference(const SynergyGroup& group) {
-  const Eigen::MatrixXd scaled = group.basis.axes * group.basis.variance.asDiagonal() * group.basis.axes.transpose();
-  return {"grasp phase of group " + group.name, group.box.scale.asDiagonal() * scaled * group.box.scale.asDiagonal()};
-}
 
 /// m. Paths keep a clearance that is proven for all of their motion (motion::ContinuousCheck). The search itself asks
 /// at samples, so it asks of bodies this much larger, a little more than the clearance: then few answers fail.
@@ -45,8 +38,9 @@ std::set<std::string> near_start(const Eigen::VectorXd& start, const NamedWorld&
   return bodies;
 }
 
-std::set<std::string> with(std::set<std::string> names, const std::string& name) {
-  names.insert(name);
+/// These bodies and what is grasped.
+std::set<std::string> with_objects(std::set<std::string> names, const NamedWorld& world) {
+  for (const GraspingArm& arm : world.arms) names.insert(arm.object);
   return names;
 }
 
@@ -75,6 +69,15 @@ Json distances(const motion::FollowedBoxes& boxes, const Run& run) {
           {"goal_final", after.goal_limit}};
 }
 
+std::vector<Contact> contacts_of(const Query& query, const std::vector<std::size_t>& grasps) {
+  std::vector<Contact> contacts;
+  for (const std::size_t i : grasps) {
+    const std::vector<Contact>& own = query.grasps[i].value.contacts;
+    contacts.insert(contacts.end(), own.begin(), own.end());
+  }
+  return contacts;
+}
+
 double thread_cpu_seconds() {
   timespec time{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
@@ -83,36 +86,8 @@ double thread_cpu_seconds() {
 
 }  // namespace
 
-Query make_query(const storage::Store& store, const NamedWorld& world) {
-  auto synergies = newest_synergies(store);
-  require_same_joints(synergies.value, world.hand);
-  Query query{start_configuration(world.robot, world.scene), std::move(synergies.value), {}, {}, {}, {}};
-  query.grasps = grasps_of(store, synergies.id, world.key());
-  if (query.grasps.empty()) {
-    throw InputError(store.directory().string() + ": no grasps of " + world.object +
-                     " with this robot, scene and the newest synergies; run: opponens grasp");
-  }
-  for (std::size_t i = 0; i < query.grasps.size(); ++i) {
-    const Grasp& grasp = query.grasps[i].value;
-    for (const auto& arm : grasp.arm_solutions) {
-      query.goals.push_back({motion::join(world.robot, arm.q_pregrasp, grasp.q_pregrasp),
-                             group_named(query.synergies, grasp.group).box, static_cast<int>(query.goals.size())});
-      query.grasp_of_goal.push_back(i);
-      query.q_grasp.push_back(motion::join(world.robot, arm.q_grasp, grasp.q_grasp));
-    }
-  }
-  return query;
-}
-
-std::optional<LikenessReference> free_motion_reference(const storage::Store& store) {
-  const Motions motions = hand_motions(store);
-  std::vector<const Demonstration*> values;
-  for (const auto& motion : motions.newest) values.push_back(&motion.value);
-  return analysis::free_motion_reference(values);
-}
-
 Planning::Planning(const PlanOptions& options, const NamedWorld& world, Query query,
-                   std::optional<LikenessReference> free_motion)
+                   std::optional<analysis::LikenessReference> free_motion)
     : options_(options),
       world_(world),
       query_(std::move(query)),
@@ -122,10 +97,10 @@ Planning::Planning(const PlanOptions& options, const NamedWorld& world, Query qu
       clearance_(std::make_shared<const motion::ContinuousCheck>(
           motion::ContinuousCheck(exact_, world.robot).starting_at(query_.start))),
       free_(world.robot, motion::grown_scene(world.scene, kGrowth, near_start_)),
-      closing_free_(world.robot, motion::grown_scene(world.scene, kGrowth, with(near_start_, world.object))),
-      closing_(world.robot, motion::grown_scene(world.scene, kGrowth, with(near_start_, world.object)),
+      closing_free_(world.robot, motion::grown_scene(world.scene, kGrowth, with_objects(near_start_, world))),
+      closing_(world.robot, motion::grown_scene(world.scene, kGrowth, with_objects(near_start_, world)),
                world.hand_object_pairs()),
-      depth_(world.robot, world.scene, world.object, world.hand_links()),
+      depth_(world.robot, world.scene, world.touching()),
       space_(motion::make_world(free_, world.robot,
                                 {options.resolution, limits_of(world.robot, options.own_resolution)}, clearance_)) {
   const auto variant = motion::variant_named(options.planner);
@@ -139,38 +114,59 @@ Planning::Planning(const PlanOptions& options, const NamedWorld& world, Query qu
   settings_.interrupted = [] { return interrupt_requested.load(); };
   motion::validate(settings_);
   if (options.smooth) clearances_ = motion::scene_clearances(world.robot, world.scene, kSmoothingReach);
-  leave_out_goals();
+  add_goals();
   if (keeps_clearance()) return;
   for (const auto& pair : exact_.colliding_pairs(query_.start)) {
     start_depths_[pair] = motion::pair_depth(world_.robot, world_.scene, query_.start, pair);
   }
 }
 
-/// What may touch on the closing segment: the links of the grasp's own contacts with the object, and nothing else.
-motion::World Planning::closing_of(const Grasp& grasp) const {
-  return motion::closing_world(closing_free_, closing_, world_.robot, grasp.contacts, densest(options_),
+/// What may touch on the closing segment: the links of each grasp's own contacts with its object, and nothing else.
+motion::World Planning::closing_of(const std::vector<std::size_t>& grasps) const {
+  return motion::closing_world(closing_free_, closing_, world_.robot, contacts_of(query_, grasps), densest(options_),
                                {.depth = &depth_, .clearance = clearance_.get()});
 }
 
-/// A goal is of use only when the hand can close from it. The grasps were asked at a spacing of their own, so this is
-/// asked again at the chosen one, before the planner may choose such a goal and lose the others with it. Goals that are
-/// no place to be at all are left to the planner, which says why it does not use them.
-void Planning::leave_out_goals() {
-  Query kept{query_.start, std::move(query_.synergies), std::move(query_.grasps), {}, {}, {}};
-  for (std::size_t i = 0; i < query_.goals.size(); ++i) {
-    const std::size_t grasp = query_.grasp_of_goal[i];
-    const auto segment = motion::closing_segment(query_.goals[i].q, query_.q_grasp[i], world_.robot.hand(),
-                                                 closing_of(kept.grasps[grasp].value));
-    const Eigen::VectorXd& q = query_.goals[i].q;
-    if (segment.invalid && world_.robot.within_limits(q) && free_.free(q)) {
-      ++goals_left_out_;
-      continue;
-    }
-    kept.goals.push_back({query_.goals[i].q, query_.goals[i].box, static_cast<int>(kept.goals.size())});
-    kept.grasp_of_goal.push_back(grasp);
-    kept.q_grasp.push_back(query_.q_grasp[i]);
+/// A goal is of use only when the hands can close from it. The grasps were asked at a spacing of their own, and each
+/// arm's with the other one at rest, so this is asked again, before the planner may choose such a goal and lose the
+/// others with it. One arm's goals that are no place to be at all are left to the planner, which says why it does not
+/// use them.
+void Planning::add_goals() {
+  const auto fault = [this](const Goal& goal) { return fault_of(goal); };
+  if (world_.arms.size() > 1) {
+    pairs_ = add_pairs(query_, world_.robot, static_cast<std::size_t>(options_.pairs), fault);
+    return;
   }
-  query_ = std::move(kept);
+  for (const ArmGoal& part : query_.arm_goals[0]) {
+    Goal goal = goal_of(query_, world_.robot, {part});
+    const auto why = fault_of(goal);
+    if (why && why->closing) {
+      ++goals_left_out_;
+    } else {
+      query_.add(std::move(goal));
+    }
+  }
+}
+
+std::optional<GoalFault> Planning::fault_of(const Goal& goal) const {
+  const Eigen::VectorXd& q = goal.root.q;
+  if (!world_.robot.within_limits(q)) return GoalFault{"outside the joint limits", {}, false};
+  if (!free_.free(q)) return GoalFault{"in collision at the pre-grasp", free_.colliding_pairs(q), false};
+  const auto segment = motion::closing_segment(q, goal.q_grasp, world_.robot.hand(), closing_of(goal.grasps));
+  if (!segment.invalid) return std::nullopt;
+  std::vector<robot::BodyPair> bodies = closing_.colliding_pairs(*segment.invalid);
+  if (bodies.empty()) return GoalFault{"too near to something, or too deep in an object, while closing", {}, true};
+  return GoalFault{"in collision while closing", std::move(bodies), true};
+}
+
+/// Why there is no goal to search for.
+std::string Planning::no_goals() const {
+  if (!pairs_) {
+    return "of " + std::to_string(goals_left_out_) + " goals none has a valid closing segment at this resolution";
+  }
+  if (pairs_->possible == 0) return "the grasps of one arm have no arm solution";
+  return "no pair of grasps fits together: " + left_out_words(*pairs_) +
+         "; more grasps of each arm (opponens grasp --count), or objects that stand further apart, may help";
 }
 
 Run Planning::run(std::uint64_t seed) const {
@@ -178,13 +174,12 @@ Run Planning::run(std::uint64_t seed) const {
   result.seed = seed;
   const double begin = thread_cpu_seconds();
   const auto& robot = world_.robot;
-  result.planned = motion::plan(query_.start, query_.synergies.pre_grasp.box, query_.goals, robot.joint_names(),
-                                robot.hand(), robot.lower(), robot.upper(), robot.weights(), space_, settings_, seed);
+  result.planned = motion::plan(query_.start, query_.start_box(), query_.goals, robot.joint_names(), robot.hand(),
+                                robot.lower(), robot.upper(), robot.weights(), space_, settings_, seed);
   result.cpu_seconds = thread_cpu_seconds() - begin;
   if (result.planned.status == PlanStatus::solved) finish(result);
   if (query_.goals.empty() && result.planned.status == PlanStatus::no_goals) {
-    result.planned.detail =
-        "of " + std::to_string(goals_left_out_) + " goals none has a valid closing segment at this resolution";
+    result.planned.detail = no_goals();
   }
   return result;
 }
@@ -200,8 +195,7 @@ std::optional<motion::FollowedBoxes> Planning::followed(const PlanResult& planne
   const auto& hand = world_.robot.hand();
   const auto& goal = query_.goals[static_cast<std::size_t>(planned.goal)];
   return motion::followed_boxes(planned.path.waypoints, planned.bridge_row,
-                                motion::box_distance(query_.synergies.pre_grasp.box, hand),
-                                motion::box_distance(goal.box, hand));
+                                motion::box_distance(query_.start_box(), hand), motion::box_distance(goal.box, hand));
 }
 
 /// Shortened within the boxes it followed, corners rounded, the closing segment appended, timed. At rest at the start,
@@ -220,9 +214,9 @@ void Planning::finish(Run& run) const {
   }
   run.length = shorter.length;
   const auto goal = static_cast<std::size_t>(run.planned.goal);
-  const Grasp& grasp = query_.grasps[query_.grasp_of_goal[goal]].value;
+  const std::vector<std::size_t>& grasps = query_.grasps_of_goal[goal];
   const motion::ClosingSegment closing =
-      motion::closing_segment(query_.goals[goal].q, query_.q_grasp[goal], robot.hand(), closing_of(grasp));
+      motion::closing_segment(query_.goals[goal].q, query_.q_grasp[goal], robot.hand(), closing_of(grasps));
   require(!closing.invalid, "plan: a goal without a valid closing segment was reached");
   const motion::BlendSettings blends;
   const motion::RateLimits limits{options_.speed * robot.velocity(), options_.speed * robot.acceleration()};
@@ -238,27 +232,15 @@ void Planning::finish(Run& run) const {
   }
   run.motion = {run.planned.path.joint_names, run.trajectory.positions};
   if (boxes) run.box_distance = distances(*boxes, run);
-  add_human_likeness(run, group_named(query_.synergies, grasp.group));
+  run.human_likeness = likeness_of_path(run.planned.path.waypoints, run.motion.waypoints.topRows(run.pregrasp_row + 1),
+                                        robot.arms(), groups_of(grasps), free_motion_);
 }
 
-void Planning::add_human_likeness(Run& run, const SynergyGroup& group) const {
-  const auto hand = [&](const Eigen::MatrixXd& q) {
-    return Eigen::MatrixXd(q.middleCols(world_.robot.hand().first, world_.robot.hand().count));
-  };
-  const auto add = [&](const char* of, const Eigen::MatrixXd& waypoints, const LikenessReference& reference) {
-    run.human_likeness.push_back({{"of", of},
-                                  {"value", number(analysis::human_likeness(hand(waypoints), reference))},
-                                  {"reference", reference.name}});
-  };
-  const Eigen::MatrixXd final = run.motion.waypoints.topRows(run.pregrasp_row + 1);
-  if (free_motion_) {
-    add("planned", run.planned.path.waypoints, *free_motion_);
-    add("final", final, *free_motion_);
-  } else {
-    run.human_likeness.push_back({{"of", "planned"}, {"value", nullptr}, {"reference", "none in the store"}});
-  }
-  add("planned", run.planned.path.waypoints, grasp_phase_reference(group));
-  add("final", final, grasp_phase_reference(group));
+std::vector<const SynergyGroup*> Planning::groups_of(const std::vector<std::size_t>& grasps) const {
+  std::vector<const SynergyGroup*> groups;
+  groups.reserve(grasps.size());
+  for (const std::size_t i : grasps) groups.push_back(&group_named(query_.synergies, query_.grasps[i].value.group));
+  return groups;
 }
 
 }  // namespace opponens::cli

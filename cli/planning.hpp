@@ -11,7 +11,9 @@
 
 #include "analysis/human_likeness.hpp"
 #include "cli/commands.hpp"
+#include "cli/goal_pairs.hpp"
 #include "cli/json.hpp"
+#include "cli/query.hpp"
 #include "cli/stored.hpp"
 #include "cli/world.hpp"
 #include "motion/contact_depth.hpp"
@@ -24,22 +26,6 @@
 #include "robot/collision.hpp"
 
 namespace opponens::cli {
-
-/// The query: goals are the pre-grasps of every arm solution of every grasp.
-struct Query {
-  Eigen::VectorXd start;
-  SynergySet synergies;
-  std::vector<Stored<Grasp>> grasps;
-  std::vector<motion::GoalRoot> goals;     ///< goal = index into this list
-  std::vector<std::size_t> grasp_of_goal;  ///< index into grasps
-  std::vector<Eigen::VectorXd> q_grasp;    ///< [d] where the closing segment of each goal ends
-};
-
-/// Throws InputError when the store has no grasps for this world, or the scene no start.
-Query make_query(const storage::Store& store, const NamedWorld& world);
-
-/// Free motions of the hand, the reference of human-likeness; nullopt when the store has none.
-std::optional<analysis::LikenessReference> free_motion_reference(const storage::Store& store);
 
 struct Run {
   std::uint64_t seed = 0;
@@ -61,9 +47,11 @@ class Planning {
   Planning(const PlanOptions& options, const NamedWorld& world, Query query,
            std::optional<analysis::LikenessReference> free_motion);
 
-  /// Goals whose closing segment is not valid at the chosen resolution have been left out of it.
+  /// With its goals: those with a closing segment that is valid at the chosen resolution.
   const Query& query() const { return query_; }
   std::size_t goals_left_out() const { return goals_left_out_; }
+  /// Where two arms are driven.
+  const std::optional<PairTally>& pairs() const { return pairs_; }
   const robot::CollisionChecker& checker() const { return free_; }
   /// Whether all pairs keep the clearance; else some only what they have at the start.
   bool keeps_clearance() const { return clearance_->pairs_nearer_at_start() == 0; }
@@ -72,11 +60,13 @@ class Planning {
   double start_depth(const robot::BodyPair& pair) const;
 
  private:
-  void leave_out_goals();
-  motion::World closing_of(const Grasp& grasp) const;
+  void add_goals();
+  motion::World closing_of(const std::vector<std::size_t>& grasps) const;
+  std::optional<GoalFault> fault_of(const Goal& goal) const;
+  std::string no_goals() const;
   std::optional<motion::FollowedBoxes> followed(const PlanResult& planned) const;
   void finish(Run& run) const;
-  void add_human_likeness(Run& run, const SynergyGroup& group) const;
+  std::vector<const SynergyGroup*> groups_of(const std::vector<std::size_t>& grasps) const;
 
   const PlanOptions& options_;
   const NamedWorld& world_;
@@ -86,14 +76,15 @@ class Planning {
   robot::CollisionChecker exact_;     ///< the scene as it is
   std::shared_ptr<const motion::ContinuousCheck> clearance_;
   robot::CollisionChecker free_;          ///< bodies grown, for the search
-  robot::CollisionChecker closing_free_;  ///< of the closing segment: the object as it is
-  robot::CollisionChecker closing_;       ///< the same, hand-object pairs left out
+  robot::CollisionChecker closing_free_;  ///< of the closing segment: the objects as they are
+  robot::CollisionChecker closing_;       ///< the same, each hand with its object left out
   motion::ContactDepth depth_;
   motion::World space_;
   motion::Clearances clearances_;  ///< empty: paths are not smoothed
   motion::PlannerSettings settings_;
   std::map<robot::BodyPair, double> start_depths_;  ///< m, of the pairs that collide at the start
   std::size_t goals_left_out_ = 0;
+  std::optional<PairTally> pairs_;
 };
 
 }  // namespace opponens::cli

@@ -36,7 +36,7 @@ std::vector<GraspSearch> grasp_searches(const storage::Store& store, const Store
   std::set<std::string> made;
   for (const auto& entry : store.list(kGraspSearch)) {
     const auto record = store.read(entry.id);
-    if (entry.inputs != std::vector<std::string>{synergies.id} || world_key(record) != world) continue;
+    if (entry.inputs != std::vector<std::string>{synergies.id} || world_keys(record) != std::vector{world}) continue;
     auto found = std::find_if(searches.begin(), searches.end(),
                               [&](const GraspSearch& search) { return search.group == record.name; });
     if (found == searches.end()) {

@@ -190,11 +190,19 @@ void add_world_and_results(const storage::Store& store, const Stored<SynergySet>
   if (!leading) return;
   const storage::Record record = store.read(*leading);
   const Json world = parameters_of(record).at("world");
-  NamedWorld loaded = load_world(world.at("robot"), world.at("scene"), world.at("object"));
+  NamedWorld loaded = load_world(world);
   input.robot = std::move(loaded.robot);
-  input.hand = std::move(loaded.hand);
   input.scene = std::move(loaded.scene);
-  input.grasps = report_grasps(store, synergies, world_key(record), *input.scene, verdicts);
+  for (auto& arm : loaded.arms) {
+    GraspPart part = report_grasps(store, synergies, key_of_arm(record, arm.name), *input.scene, verdicts);
+    if (loaded.arms.size() > 1) part.arm = arm.name;
+    if (!input.grasps) {
+      input.hand = std::move(arm.hand);
+      input.grasps = std::move(part);
+    } else {
+      input.further_hands.push_back({std::move(arm.hand), std::move(part)});
+    }
+  }
   input.path = path_part(store, plans);
   input.provenance = chain_of(store, input.path && !input.path->id.empty() ? input.path->id
                                      : grasps.empty()                      ? *leading

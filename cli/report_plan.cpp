@@ -17,12 +17,19 @@ namespace {
 using report::PathPart;
 using report::PlanRun;
 
+/// Of which hands a value is, where several move: ", right hand" or ", mean over hands".
+std::string hands_words(const Json& one) {
+  if (!one.contains("hands")) return "";
+  const Json& hands = one.at("hands");
+  return hands.size() == 1 ? ", " + hands[0].get<std::string>() + " hand" : ", mean over hands";
+}
+
 std::vector<report::HumanLikeness> likeness_from(const Json& all) {
   std::vector<report::HumanLikeness> result;
   for (const auto& one : all) {
     const std::string reference = one.at("reference");
     const std::string of = one.at("of");
-    result.push_back({optional_number(one.at("value")), reference + ", " + of + " path"});
+    result.push_back({optional_number(one.at("value")), reference + ", " + of + " path" + hands_words(one)});
   }
   return result;
 }
@@ -42,6 +49,14 @@ std::string settings_words(const Json& parameters) {
   return words;
 }
 
+std::vector<report::ReachedGrasp> reached_from(const Json& run) {
+  if (!run.at("goal").is_string()) return {};
+  if (!run.contains("goals")) return {{"", run.at("goal")}};
+  std::vector<report::ReachedGrasp> reached;
+  for (const auto& one : run.at("goals")) reached.push_back({one.at("arm"), one.at("grasp")});
+  return reached;
+}
+
 PlanRun run_from(const Json& json, const Json& parameters) {
   PlanRun run;
   run.planner = parameters.at("planner");
@@ -50,7 +65,7 @@ PlanRun run_from(const Json& json, const Json& parameters) {
   run.result.status = status_from(json.at("status"));
   run.result.detail = json.at("detail");
   run.result.goal = json.at("goal_index");
-  if (json.at("goal").is_string()) run.goal_grasp = json.at("goal");
+  run.reached = reached_from(json);
   run.result.iterations = json.at("iterations");
   run.result.extends = json.at("extends");
   run.result.extends_grown = json.at("extends_grown");
@@ -64,7 +79,6 @@ PlanRun run_from(const Json& json, const Json& parameters) {
 
 void add_motion(const std::string& id, const storage::Record& record, PathPart& part) {
   part.id = id;
-  part.goal_grasp = text_field(record, "goal_grasp");
   part.path.joint_names = storage::decode_plan_result(record).path.joint_names;
   part.path.waypoints = std::get<Eigen::MatrixXd>(record.fields.at("motion"));
   part.times = std::get<Eigen::VectorXd>(record.fields.at("times"));
@@ -86,6 +100,7 @@ std::vector<PlanRun> runs_of(const storage::Record& record, PathPart& part, bool
   }
   if (!pictured || path.empty()) return runs;
   add_motion(path, store.read(path), part);
+  part.reached = runs[shown].reached;
   std::rotate(runs.begin(), runs.begin() + static_cast<std::ptrdiff_t>(shown),
               runs.begin() + static_cast<std::ptrdiff_t>(shown) + 1);
   return runs;
@@ -95,12 +110,12 @@ std::vector<PlanRun> runs_of(const storage::Record& record, PathPart& part, bool
 
 std::optional<PathPart> path_part(const storage::Store& store, const std::vector<storage::IndexEntry>& plans) {
   if (plans.empty()) return std::nullopt;
-  const WorldKey world = world_key(store.read(plans.front().id));
+  const std::vector<WorldKey> worlds = world_keys(store.read(plans.front().id));
   PathPart part;
   std::set<std::string> seen;
   for (const auto& entry : plans) {
     const auto record = store.read(entry.id);
-    if (entry.inputs != plans.front().inputs || world_key(record) != world) continue;
+    if (entry.inputs != plans.front().inputs || world_keys(record) != worlds) continue;
     if (!seen.insert(parameters_of(record).at("planner")).second) continue;
     const auto runs = runs_of(record, part, entry.id == plans.front().id, store);
     part.runs.insert(part.runs.end(), runs.begin(), runs.end());

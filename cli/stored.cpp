@@ -151,11 +151,21 @@ std::string recorded_arm(const std::string& robot) {
   return hash == std::string::npos || robot.find('/', hash) != std::string::npos ? "" : robot.substr(hash + 1);
 }
 
-WorldKey world_key(const storage::Record& record) {
+std::vector<WorldKey> world_keys(const storage::Record& record) {
   const nlohmann::json world = parameters_of(record).at("world");
-  WorldKey key{world.at("object"), recorded_arm(world.at("robot")), {}};
-  for (const auto& [name, hash] : record.provenance.files) key.files.insert(hash);
-  return key;
+  std::set<std::string> files;
+  for (const auto& [name, hash] : record.provenance.files) files.insert(hash);
+  if (!world.contains("objects")) return {{world.at("object"), recorded_arm(world.at("robot")), std::move(files)}};
+  std::vector<WorldKey> keys;
+  for (const auto& [arm, object] : world.at("objects").items()) keys.push_back({object, arm, files});
+  return keys;
+}
+
+WorldKey key_of_arm(const storage::Record& record, const std::string& arm) {
+  for (auto& key : world_keys(record)) {
+    if (key.arm == arm) return key;
+  }
+  throw InputError(record.kind + " '" + record.name + "' is not about arm '" + arm + "', though its robot is");
 }
 
 std::vector<Stored<Grasp>> grasps_of(const storage::Store& store, const std::string& synergies, const WorldKey& world) {
@@ -163,21 +173,18 @@ std::vector<Stored<Grasp>> grasps_of(const storage::Store& store, const std::str
   for (const auto& entry : store.list(kGrasp)) {
     if (std::find(entry.inputs.begin(), entry.inputs.end(), synergies) == entry.inputs.end()) continue;
     storage::Record record = store.read(entry.id);
-    if (world_key(record) != world) continue;
+    if (world_keys(record) != std::vector{world}) continue;
     Grasp value = storage::decode_grasp(record);
     result.push_back({entry.id, std::move(record), std::move(value)});
   }
   return result;
 }
 
-nlohmann::json world_parameters(const NamedRobot& robot, const std::string& scene, const std::string& object) {
-  const std::string arm = robot.arm.empty() ? "" : "#" + robot.arm;
-  return {{"robot", recorded_name(robot.file) + arm}, {"scene", recorded_name(find_file(scene))}, {"object", object}};
-}
-
 nlohmann::json parameters_of(const storage::Record& record) {
   return nlohmann::json::parse(record.provenance.parameters);
 }
+
+std::string goal_grasp_field(const std::string& arm) { return "goal_grasp." + arm; }
 
 std::string text_field(const storage::Record& record, const std::string& name) {
   const auto found = record.fields.find(name);

@@ -78,7 +78,7 @@ Stored<SynergySet> newest_synergies(const storage::Store& store);
 /// The grasp-phase group of that name. Throws InputError when the set has none: a grasp names its group.
 const SynergyGroup& group_named(const SynergySet& set, const std::string& name);
 
-/// Robot, scene and object by what their files hold, not by how their paths are spelt.
+/// Robot, scene and object of one arm's grasps, by what their files hold, not by how their paths are spelt.
 struct WorldKey {
   std::string object;
   std::string arm;              ///< of a robot with several arms
@@ -87,17 +87,19 @@ struct WorldKey {
 };
 /// The arm in a recorded "FILE#ARM"; empty: none.
 std::string recorded_arm(const std::string& robot);
-/// Of a stored grasp, search or path.
-WorldKey world_key(const storage::Record& record);
+/// Of a stored grasp, search or path: one for each arm that it is about.
+std::vector<WorldKey> world_keys(const storage::Record& record);
+/// The one of that arm. Throws InputError when the object is not about it.
+WorldKey key_of_arm(const storage::Record& record, const std::string& arm);
 
 /// Grasps made from a synergy set with the given robot, scene and object.
 std::vector<Stored<Grasp>> grasps_of(const storage::Store& store, const std::string& synergies, const WorldKey& world);
 
-/// The parameters by which grasps and paths find their robot, scene and object again.
-/// The robot's arm, if it has several, is named with its file: "FILE#ARM".
-nlohmann::json world_parameters(const NamedRobot& robot, const std::string& scene, const std::string& object);
 /// Robot, scene and object that a stored object was made with.
 nlohmann::json parameters_of(const storage::Record& record);
+
+/// The field of a path that names the grasp of an arm after the first one, whose field is "goal_grasp".
+std::string goal_grasp_field(const std::string& arm);
 
 /// A text field; empty when the record has none of that name.
 std::string text_field(const storage::Record& record, const std::string& name);

@@ -10,6 +10,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/json.hpp"
+#include "cli/path_claim.hpp"
 #include "cli/resources.hpp"
 #include "cli/stored.hpp"
 #include "cli/world.hpp"
@@ -43,9 +44,7 @@ struct Shared {
     const std::string key = parameters.dump();
     const auto found = worlds.find(key);
     if (found != worlds.end()) return found->second;
-    return worlds
-        .emplace(key, CheckedWorld{load_world(parameters.at("robot"), parameters.at("scene"), parameters.at("object"))})
-        .first->second;
+    return worlds.emplace(key, CheckedWorld{load_world(parameters)}).first->second;
   }
 };
 
@@ -71,46 +70,19 @@ Verdict grasp_verdict(const storage::Store& store, const storage::Record& record
   opponens::verify::GraspCheckSettings settings;
   settings.slack_bound = parameters_of(record).value("slack_bound", settings.slack_bound);
   Verdict verdict =
-      opponens::verify::check_grasp(grasp, {&group.box, &world.hand, &world.scene.body(world.object)}, settings);
+      opponens::verify::check_grasp(grasp, {&group.box, &world.hand(), &world.scene.body(world.object())}, settings);
   opponens::verify::check_arm_solutions(grasp, world.robot, world.X_RO(), settings.tolerance, verdict);
   return verdict;
 }
 
-/// The arm solution that a path uses: the one nearest to its pre-grasp (PathChecker asks for equality).
-const ArmSolution& solution_used(const Grasp& grasp, const Eigen::VectorXd& q_arm) {
-  return *std::min_element(grasp.arm_solutions.begin(), grasp.arm_solutions.end(),
-                           [&](const ArmSolution& a, const ArmSolution& b) {
-                             return (a.q_pregrasp - q_arm).norm() < (b.q_pregrasp - q_arm).norm();
-                           });
-}
-
 Verdict path_verdict(const storage::Store& store, const storage::Record& record, Shared& shared) {
-  const Json parameters = parameters_of(record);
-  CheckedWorld& checked = shared.world_of(parameters.at("world"));
-  const NamedWorld& world = checked.named;
-  const Grasp grasp = storage::decode_grasp(store.read(std::get<std::string>(record.fields.at("goal_grasp"))));
-  const PlanResult planned = storage::decode_plan_result(record);
-  const JointPath motion{planned.path.joint_names, std::get<Eigen::MatrixXd>(record.fields.at("motion"))};
-  opponens::verify::PathClaim claim;
-  claim.start = start_configuration(world.robot, world.scene);
-  claim.closing_from = std::get<std::int64_t>(record.fields.at("pregrasp_row"));
+  CheckedWorld& checked = shared.world_of(parameters_of(record).at("world"));
+  const JointPath motion{storage::decode_plan_result(record).path.joint_names,
+                         std::get<Eigen::MatrixXd>(record.fields.at("motion"))};
   Verdict verdict;
-  if (grasp.arm_solutions.empty() || claim.closing_from < 0 || claim.closing_from >= motion.waypoints.rows()) {
-    verdict.fail("its grasp has no arm solution, or its pre-grasp is no waypoint");
-    return verdict;
-  }
-  const ArmSolution& arm =
-      solution_used(grasp, motion.waypoints.row(claim.closing_from).head(world.robot.arm().count).transpose());
-  claim.goal.resize(world.robot.dof());
-  claim.goal << arm.q_pregrasp, grasp.q_pregrasp;
-  claim.grasp = Eigen::VectorXd(world.robot.dof());
-  *claim.grasp << arm.q_grasp, grasp.q_grasp;
-  const Eigen::Isometry3d X_WO = world.scene.body(world.object).X_WB;
-  claim.X_WH_pregrasp = X_WO * grasp.X_OH_pregrasp;
-  claim.X_WH_grasp = X_WO * grasp.X_OH;
-  claim.object = world.object;
-  for (const auto& contact : grasp.contacts) claim.contact_links.insert(contact.link);
-  return checked.path_checker().check(motion, claim, shared.limits);
+  const auto claim = path_claim(store, record, checked.named, motion, verdict);
+  if (!claim) return verdict;
+  return checked.path_checker().check(motion, *claim, shared.limits);
 }
 
 struct Tally {

@@ -4,14 +4,31 @@
 
 #include <algorithm>
 
+#include "cli/object_choice.hpp"
 #include "cli/resources.hpp"
 #include "cli/stored.hpp"
 #include "core/require.hpp"
 #include "robot/cover_file.hpp"
 #include "robot/load_robot.hpp"
 #include "robot/mesh_check.hpp"
+#include "robot/robot_arms.hpp"
 
 namespace opponens::cli {
+namespace {
+
+/// The parameters by which grasps and paths find their robot, scene and objects again. The robot's arm, if it has
+/// several, is named with its file: "FILE#ARM".
+Json world_parameters(const NamedRobot& robot, const std::string& scene, const std::vector<GraspingArm>& arms) {
+  const std::string arm = robot.arm.empty() ? "" : "#" + robot.arm;
+  Json parameters = {{"robot", recorded_name(robot.file) + arm}, {"scene", recorded_name(find_file(scene))}};
+  if (arms.size() == 1) parameters["object"] = arms[0].object;
+  if (arms.size() > 1) {
+    for (const GraspingArm& one : arms) parameters["objects"][one.name] = one.object;
+  }
+  return parameters;
+}
+
+}  // namespace
 
 robot::RobotDescription load_hand_file(const std::string& hand, const std::string& urdf) {
   return urdf.empty() ? robot::load_hand(find_file(hand)) : robot::load_hand(find_file(hand), find_file(urdf));
@@ -22,49 +39,70 @@ robot::RobotDescription hand_of_motion(const storage::Record& record) {
   return load_hand_file(parameters.at("hand"), parameters.value("urdf", ""));
 }
 
-NamedWorld load_world(const std::string& robot_file, const std::string& scene_file, const std::string& object) {
+NamedWorld load_world(const std::string& robot_file, const std::string& scene_file,
+                      const std::vector<std::string>& objects) {
   NamedRobot named = named_robot(robot_file);
   const auto scene_path = find_file(scene_file);
   const std::filesystem::path covers = cover_folder();
-  robot::RobotDescription description = with_covers(robot::load_robot(named.file, named.arm), covers);
-  if (description.driven_arms.size() > 1) {
-    throw InputError("--robot " + robot_file + ": one arm grasps and moves; name it: " + named.file.string() + "#" +
-                     description.driven_arms[0] + " or #" + description.driven_arms[1]);
-  }
-  if (!description.driven_arms.empty()) named.arm = description.driven_arms[0];
+  const robot::RobotDescription description = with_covers(robot::load_robot(named.file, named.arm), covers);
+  const std::vector<std::string>& driven = description.driven_arms;
+  if (!driven.empty()) named.arm = driven.size() == 1 ? driven[0] : robot::kBothArms;
   if (description.hand_joints.empty()) throw InputError(robot_file + ": is an arm without a hand: nothing can grasp");
-  robot::RobotDescription hand = robot::hand_of(description);
   robot::Scene scene = with_covers(robot::load_scene(scene_path), covers);
-  const std::string name = object.empty() ? scene.object : object;
-  if (name.empty()) throw InputError(scene_file + ": names no object to grasp; use --object");
-  const bool known = std::any_of(scene.bodies.begin(), scene.bodies.end(),
-                                 [&](const robot::SceneBody& body) { return body.name == name; });
-  if (!known) throw InputError("--object " + name + ": no such body in " + scene_file);
+  const std::vector<std::string> chosen = objects_of_arms(objects, driven, scene, scene_file);
+  std::vector<GraspingArm> arms;
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    arms.push_back(
+        {driven.empty() ? "" : driven[i],
+         robot::RobotModel(robot::hand_of(driven.size() > 1 ? drive_arms(description, driven[i]) : description)),
+         chosen[i]});
+  }
   std::vector<std::filesystem::path> files = description.files;
   files.insert(files.end(), scene.files.begin(), scene.files.end());
-  return {robot::RobotModel(std::move(description)),
-          robot::RobotModel(std::move(hand)),
-          std::move(scene),
-          name,
-          world_parameters(named, scene_file, name),
-          std::move(files)};
+  Json parameters = world_parameters(named, scene_file, arms);
+  return {robot::RobotModel(description), std::move(arms), std::move(scene), std::move(parameters), std::move(files)};
 }
 
-std::vector<std::string> NamedWorld::hand_links() const {
-  std::vector<std::string> names;
-  for (const auto& link : hand.links()) names.push_back(link.name);
-  return names;
+NamedWorld load_world(const Json& recorded) {
+  return load_world(recorded.at("robot"), recorded.at("scene"), object_arguments(recorded));
 }
 
-WorldKey NamedWorld::key() const {
-  WorldKey key{object, recorded_arm(parameters.at("robot")), {}};
+std::string file_with_arm(const NamedWorld& world, const std::string& arm) {
+  const auto robot = world.parameters.at("robot").get<std::string>();
+  return robot.substr(0, robot.size() - recorded_arm(robot).size()) + arm;
+}
+
+void require_one_arm(const NamedWorld& world) {
+  if (world.arms.size() == 1) return;
+  throw InputError("--robot " + world.parameters.at("robot").get<std::string>() + ": a grasp is of one arm; name it: " +
+                   file_with_arm(world, world.arms[0].name) + " or #" + world.arms[1].name);
+}
+
+const GraspingArm& NamedWorld::one_arm() const {
+  require(arms.size() == 1, "this is about one arm, and several are driven");
+  return arms[0];
+}
+
+WorldKey NamedWorld::key(const GraspingArm& arm) const {
+  WorldKey key{arm.object, arm.name, {}};
   for (const auto& file : files) key.files.insert(file_sha256(file));
   return key;
 }
 
+std::vector<motion::TouchingLinks> NamedWorld::touching() const {
+  std::vector<motion::TouchingLinks> hands;
+  for (const GraspingArm& arm : arms) {
+    hands.push_back({arm.object, {}});
+    for (const auto& link : arm.hand.links()) hands.back().links.push_back(link.name);
+  }
+  return hands;
+}
+
 std::vector<robot::BodyPair> NamedWorld::hand_object_pairs() const {
   std::vector<robot::BodyPair> pairs;
-  for (const auto& link : hand_links()) pairs.emplace_back(link, object);
+  for (const motion::TouchingLinks& hand : touching()) {
+    for (const std::string& link : hand.links) pairs.emplace_back(link, hand.object);
+  }
   return pairs;
 }
 

@@ -21,8 +21,20 @@ constexpr std::size_t kLeafPoints = 8;
 
 ContactDepth::ContactDepth(const robot::RobotModel& robot, const robot::Scene& scene, const std::string& object,
                            const std::vector<std::string>& links, double spacing)
+    : ContactDepth(robot, scene, {{object, links}}, spacing) {}
+
+ContactDepth::ContactDepth(const robot::RobotModel& robot, const robot::Scene& scene,
+                           const std::vector<TouchingLinks>& hands, double spacing)
     : robot_(&robot) {
   require(spacing > 0.0, "ContactDepth: spacing must be positive");
+  for (const TouchingLinks& hand : hands) {
+    const std::size_t first_solid = solids_.size();
+    add_object(scene, hand.object);
+    for (const std::string& link : hand.links) add_link(link, spacing, first_solid);
+  }
+}
+
+void ContactDepth::add_object(const robot::Scene& scene, const std::string& object) {
   const robot::SceneBody& body = scene.body(object);
   for (const robot::Geometry& geometry : body.geometry) {
     const auto* shared = std::get_if<std::shared_ptr<const robot::TriangleMesh>>(&geometry.shape);
@@ -31,18 +43,19 @@ ContactDepth::ContactDepth(const robot::RobotModel& robot, const robot::Scene& s
     const Eigen::AlignedBox3d box(mesh->vertices.rowwise().minCoeff(), mesh->vertices.rowwise().maxCoeff());
     solids_.push_back({robot::MeshDistance(std::move(mesh)), X_GR, box});
   }
-  for (const std::string& name : links) {
-    const int link = robot.link_index(name);
-    std::vector<Eigen::Vector3d> points;
-    for (const robot::Geometry& geometry : robot.links()[static_cast<std::size_t>(link)].collision) {
-      // Points of a link's geometry come in the body frame.
-      const auto samples = robot::surface_samples(geometry, spacing);
-      points.insert(points.end(), samples.begin(), samples.end());
-    }
-    if (points.empty()) continue;
-    links_.push_back({link, std::move(points), {}});
-    links_.back().enclose(0, links_.back().points.size());
+}
+
+void ContactDepth::add_link(const std::string& name, double spacing, std::size_t first_solid) {
+  const int link = robot_->link_index(name);
+  std::vector<Eigen::Vector3d> points;
+  for (const robot::Geometry& geometry : robot_->links()[static_cast<std::size_t>(link)].collision) {
+    // Points of a link's geometry come in the body frame.
+    const auto samples = robot::surface_samples(geometry, spacing);
+    points.insert(points.end(), samples.begin(), samples.end());
   }
+  if (points.empty()) return;
+  links_.push_back({link, std::move(points), {}, first_solid, solids_.size()});
+  links_.back().enclose(0, links_.back().points.size());
 }
 
 void ContactDepth::LinkSurface::enclose(std::size_t begin, std::size_t end) {
@@ -90,7 +103,8 @@ double ContactDepth::operator()(const Eigen::VectorXd& q) const {
   const std::vector<Eigen::Isometry3d> X_RL = robot_->link_poses(q);
   double depth = 0.0;
   for (const LinkSurface& link : links_) {
-    for (const Solid& solid : solids_) {
+    for (std::size_t i = link.first_solid; i < link.last_solid; ++i) {
+      const Solid& solid = solids_[i];
       depth = deepest(link, solid, solid.X_GR * X_RL[static_cast<std::size_t>(link.link)], depth);
     }
   }

@@ -15,13 +15,22 @@
 
 namespace opponens::motion {
 
-/// How deep some links stick in the object: what bounds the contacts of a closing segment, whose link-object pairs the
-/// collision checker leaves out. Measured at points on the links' surfaces, so a depth may be missed by at most about
-/// spacing^2 / (8 r) where the object's radius of curvature is r, and by spacing at its edges. Immutable, thread-safe.
+/// Links that may touch an object: a hand's, with what it grasps.
+struct TouchingLinks {
+  std::string object;              ///< a body of the scene
+  std::vector<std::string> links;  ///< names
+};
+
+/// How deep some links stick in their object: what bounds the contacts of a closing segment, whose link-object pairs
+/// the collision checker leaves out. Measured at points on the links' surfaces, so a depth may be missed by at most
+/// about spacing^2 / (8 r) where the object's radius of curvature is r, and by spacing at its edges. Immutable,
+/// thread-safe.
 class ContactDepth {
  public:
-  /// links: names of the links that may touch; object: a body of the scene; spacing of the surface points, m.
-  /// robot is referred to and must outlive this.
+  /// spacing of the surface points, m. robot is referred to and must outlive this.
+  ContactDepth(const robot::RobotModel& robot, const robot::Scene& scene, const std::vector<TouchingLinks>& hands,
+               double spacing = 0.003);
+  /// Of one hand.
   ContactDepth(const robot::RobotModel& robot, const robot::Scene& scene, const std::string& object,
                const std::vector<std::string>& links, double spacing = 0.003);
 
@@ -41,6 +50,7 @@ class ContactDepth {
     int link;
     std::vector<Eigen::Vector3d> points;  ///< m, in the link
     std::vector<Ball> balls;
+    std::size_t first_solid, last_solid;  ///< of its object: [first, last)
     void enclose(std::size_t begin, std::size_t end);
   };
   struct Solid {
@@ -48,6 +58,9 @@ class ContactDepth {
     Eigen::Isometry3d X_GR;   ///< robot root in the geometry's frame
     Eigen::AlignedBox3d box;  ///< of the geometry: what is outside is at least as far from the surface as from it
   };
+  void add_object(const robot::Scene& scene, const std::string& object);
+  void add_link(const std::string& name, double spacing, std::size_t first_solid);
+
   /// The greater of depth and what the points of the link reach in the solid.
   static double deepest(const LinkSurface& link, const Solid& solid, const Eigen::Isometry3d& X_GL, double depth);
 

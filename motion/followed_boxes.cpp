@@ -31,15 +31,6 @@ BoxDistance box_distance(const SynergyBox& box, const PlanningGroup& hand) {
   };
 }
 
-BoxDistance farthest(std::vector<BoxDistance> distances) {
-  require(!distances.empty(), "farthest: no distance given");
-  return [distances = std::move(distances)](const Eigen::VectorXd& q) {
-    double largest = 0.0;
-    for (const BoxDistance& distance : distances) largest = std::max(largest, distance(q));
-    return largest;
-  };
-}
-
 FollowedBoxes followed_boxes(const Eigen::MatrixXd& planned, int bridge_row, BoxDistance start, BoxDistance goal) {
   require(bridge_row >= 0 && bridge_row < planned.rows(), "followed_boxes: bridge_row is no row of the path");
   FollowedBoxes boxes{std::move(start), std::move(goal), 0.0, 0.0, planned.row(bridge_row).transpose()};

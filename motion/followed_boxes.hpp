@@ -13,14 +13,12 @@
 
 namespace opponens::motion {
 
-/// Distance of a configuration from what its hand, or hands, should follow: scaled units (rad where the box's scale is
-/// 1), >= 0, convex in q. So along a straight motion it is largest at an end.
+/// Distance of a configuration from what its hand (or hands, in their product box) should follow: scaled units (rad
+/// where the box's scale is 1), >= 0, convex in q. So along a straight motion it is largest at an end.
 using BoxDistance = std::function<double(const Eigen::VectorXd& q)>;
 
 /// Of the hand's joints from a synergy box: |q_h ./ scale - its projection|. hand: index range in q.
 BoxDistance box_distance(const SynergyBox& box, const PlanningGroup& hand);
-/// Of several hands from a box each: the largest.
-BoxDistance farthest(std::vector<BoxDistance> distances);
 
 /// The boxes that a planned path followed, and how far it strayed. The law of all that is done after planning: up to
 /// some waypoint every waypoint is within start_limit of the start's box, from it on within goal_limit of the goal's;

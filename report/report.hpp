@@ -128,6 +128,7 @@ struct GraspSearch {
 };
 
 struct GraspPart {
+  std::string arm;                    ///< whose grasps these are; empty: only one arm grasps
   std::string object;                 ///< body of the scene
   std::string grouped_by;             ///< label that formed the groups: "family", ...; empty: unknown
   std::vector<GraspItem> items;       ///< best first
@@ -140,6 +141,12 @@ struct HumanLikeness {
   std::string reference;        ///< named beside every value, e.g. "free-finger recordings (simulated)"
 };
 
+/// A grasp that a path ends at.
+struct ReachedGrasp {
+  std::string arm;  ///< empty: only one arm grasps
+  std::string id;
+};
+
 /// One planning run: a row of Table 2 is the mean over the runs of a planner.
 struct PlanRun {
   std::string planner;   ///< "synergy" or "rrtconnect"
@@ -148,17 +155,17 @@ struct PlanRun {
   PlanResult result;                          ///< path may be empty: it is not drawn from here
   std::optional<double> shortened_length;     ///< rad, joint metric, after the shortcuts; nullopt: unknown or unsolved
   std::vector<HumanLikeness> human_likeness;  ///< the first is the one of Table 2
-  std::string goal_grasp;                     ///< id of the grasp reached; empty: none
+  std::vector<ReachedGrasp> reached;          ///< one for each arm; empty: none
 };
 
 struct PathPart {
   std::string id;
-  std::vector<PlanRun> runs;  ///< solved or not; the first is the run whose path is shown, when there is one
-  std::string goal_grasp;     ///< id of the grasp that is reached; empty: unknown
-  JointPath path;             ///< shortcut and closing segment included; rows from start to grasp
-  Eigen::VectorXd times;      ///< [N] s; empty: not timed
-  int pregrasp = -1;          ///< row of the pre-grasp, where the closing segment starts; -1: none
-  int pictures = 4;           ///< snapshots per view, start and end included
+  std::vector<PlanRun> runs;          ///< solved or not; the first is the run whose path is shown, when there is one
+  std::vector<ReachedGrasp> reached;  ///< one for each arm; empty: unknown
+  JointPath path;                     ///< shortcut and closing segment included; rows from start to grasp
+  Eigen::VectorXd times;              ///< [N] s; empty: not timed
+  int pregrasp = -1;                  ///< row of the pre-grasp, where the closing segment starts; -1: none
+  int pictures = 4;                   ///< snapshots per view, start and end included
 };
 
 struct Verdict {
@@ -206,6 +213,12 @@ struct RunPart {
   std::vector<Command> commands;  ///< in the order of the log
 };
 
+/// Another arm's hand, where several grasp.
+struct FurtherHand {
+  robot::RobotModel hand;  ///< as ReportInput::hand
+  GraspPart grasps;
+};
+
 struct ReportInput {
   std::string title = "Human-like grasping motions";
   std::string program_version;
@@ -215,7 +228,8 @@ struct ReportInput {
   std::optional<robot::RobotModel> hand;   ///< rooted at the palm (robot::load_hand); missing: no drawings of hands
   std::optional<robot::RobotModel> robot;  ///< missing: no snapshots
   std::optional<robot::Scene> scene;       ///< missing: no grasp pictures, no snapshots
-  std::optional<GraspPart> grasps;
+  std::optional<GraspPart> grasps;         ///< of `hand`
+  std::vector<FurtherHand> further_hands;  ///< where several arms grasp at once
   std::optional<PathPart> path;
   std::optional<VerifyPart> verification;
   std::vector<ProvenanceItem> provenance;  ///< any order

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "report/scene_drawing.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -28,17 +29,21 @@ Bounds bounds_of(const std::vector<Eigen::Vector3d>& points) {
   return bounds;
 }
 
-int paint_of(const robot::Scene& scene, const robot::SceneBody& body, const std::string& object) {
-  if (body.name == object) return paint_object;
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+int paint_of(const robot::Scene& scene, const robot::SceneBody& body, const std::vector<std::string>& objects) {
+  if (contains(objects, body.name)) return paint_object;
   return body.name == scene.support ? paint_support : paint_obstacle;
 }
 
-/// Horizontal unit direction from the robot's root to the object, or to the middle of all bodies.
-Eigen::Vector3d heading(const robot::Scene& scene, const std::string& object) {
+/// Horizontal unit direction from the robot's root to the middle of the objects, or to the middle of all bodies.
+Eigen::Vector3d heading(const robot::Scene& scene, const std::vector<std::string>& objects) {
   Eigen::Vector3d target = Eigen::Vector3d::Zero();
   double count = 0.0;
   for (const auto& body : scene.bodies) {
-    if (!object.empty() && body.name != object) continue;
+    if (!objects.empty() && !contains(objects, body.name)) continue;
     target += body.X_WB.translation();
     count += 1.0;
   }
@@ -48,17 +53,28 @@ Eigen::Vector3d heading(const robot::Scene& scene, const std::string& object) {
   return ahead.norm() > 1e-6 ? Eigen::Vector3d(ahead.normalized()) : Eigen::Vector3d(Eigen::Vector3d::UnitX());
 }
 
+void draw_trail(Svg& svg, const View& view, const Trail& trail) {
+  std::vector<Eigen::Vector2d> line;
+  line.reserve(trail.size());
+  for (const auto& p : trail) line.push_back(view.project(p));
+  if (line.size() < 2) return;
+  svg.polyline(line, "class=\"trail-halo\"");
+  svg.polyline(line, "class=\"trail\"");
+  svg.circle(line.front().x(), line.front().y(), 3.0, "class=\"trail-start\"");
+  svg.circle(line.back().x(), line.back().y(), 3.0, "class=\"trail-end\"");
+}
+
 }  // namespace
 
-DrawnScene drawn_scene(const robot::RobotModel& robot, const robot::Scene& scene, const std::string& object,
-                       int max_triangles) {
+DrawnScene drawn_scene(const robot::RobotModel& robot, const robot::Scene& scene,
+                       const std::vector<std::string>& objects, int max_triangles) {
   DrawnScene drawn;
   drawn.robot = robot_facets(robot, max_triangles);
   for (const auto& body : scene.bodies) {
     std::vector<Facet> surface;
-    const FacetDetail detail{16, body.name == object ? 1000 : 500};
+    const FacetDetail detail{16, contains(objects, body.name) ? 1000 : 500};
     for (const auto& geometry : body.geometry) {
-      append(surface, facets(geometry, paint_of(scene, body, object), detail), body.X_WB);
+      append(surface, facets(geometry, paint_of(scene, body, objects), detail), body.X_WB);
     }
     const auto corners = corners_of(surface);
     const Bounds bounds = bounds_of(corners);
@@ -70,10 +86,10 @@ DrawnScene drawn_scene(const robot::RobotModel& robot, const robot::Scene& scene
   return drawn;
 }
 
-View scene_view(const robot::RobotModel& robot, const robot::Scene& scene, const std::string& object,
+View scene_view(const robot::RobotModel& robot, const robot::Scene& scene, const std::vector<std::string>& objects,
                 const DrawnScene& drawn, const Camera& camera, const std::vector<Eigen::VectorXd>& configurations,
                 double width, double height) {
-  const Eigen::Vector3d ahead = heading(scene, object);
+  const Eigen::Vector3d ahead = heading(scene, objects);
   const Eigen::Vector3d left = Eigen::Vector3d::UnitZ().cross(ahead);
   const Eigen::Vector3d level = std::sin(camera.azimuth) * left - std::cos(camera.azimuth) * ahead;
   const Eigen::Vector3d toward =
@@ -90,22 +106,14 @@ View scene_view(const robot::RobotModel& robot, const robot::Scene& scene, const
 }
 
 std::string draw_scene(const robot::RobotModel& robot, const robot::Scene& scene, const DrawnScene& drawn,
-                       const View& view, const Eigen::VectorXd& q, const std::vector<Eigen::Vector3d>& trail,
+                       const View& view, const Eigen::VectorXd& q, const std::vector<Trail>& trails,
                        const std::string& title) {
   std::vector<Facet> all = drawn.bodies;
   append_robot(all, robot, drawn.robot, scene.X_WR, q);
   Svg svg(view.width, view.height, title);
   svg.rect(0.0, 0.0, view.width, view.height, "class=\"sky\"");
   draw_facets(svg, view, std::move(all), body_paints());
-  std::vector<Eigen::Vector2d> line;
-  line.reserve(trail.size());
-  for (const auto& p : trail) line.push_back(view.project(p));
-  if (line.size() >= 2) {
-    svg.polyline(line, "class=\"trail-halo\"");
-    svg.polyline(line, "class=\"trail\"");
-    svg.circle(line.front().x(), line.front().y(), 3.0, "class=\"trail-start\"");
-    svg.circle(line.back().x(), line.back().y(), 3.0, "class=\"trail-end\"");
-  }
+  for (const Trail& trail : trails) draw_trail(svg, view, trail);
   return svg.str();
 }
 

@@ -13,10 +13,10 @@ namespace opponens::report {
 namespace {
 
 /// The hand and the object's body, when the input has what a picture needs.
-std::optional<GraspStage> stage_of(const ReportInput& input) {
-  if (!input.hand || !input.scene) return std::nullopt;
-  for (const auto& body : input.scene->bodies) {
-    if (body.name == input.grasps->object && !body.geometry.empty()) return grasp_stage(*input.hand, body);
+std::optional<GraspStage> stage_of(const robot::RobotModel& hand, const robot::Scene& scene,
+                                   const std::string& object) {
+  for (const auto& body : scene.bodies) {
+    if (body.name == object && !body.geometry.empty()) return grasp_stage(hand, body);
   }
   return std::nullopt;
 }
@@ -48,8 +48,9 @@ const GraspSearch* search_of(const GraspPart& part, const std::string& group) {
 
 std::string titled(const GraspPart& part, const std::string& group) {
   const GraspSearch* search = search_of(part, group);
-  if (search != nullptr && !search->of_group) return group;
-  return concat({part.grouped_by.empty() ? "group" : part.grouped_by, " ", group});
+  const std::string of_arm = part.arm.empty() ? "" : concat({"arm ", part.arm, ", "});
+  if (search != nullptr && !search->of_group) return concat({of_arm, group});
+  return concat({of_arm, part.grouped_by.empty() ? "group" : part.grouped_by, " ", group});
 }
 
 std::string grasps_of_object(const GraspPart& part, std::int64_t count) {
@@ -105,8 +106,10 @@ Markup group_section(const GraspPart& part, const GraspStage* stage, const std::
 Markup certified_words(const Grasp& grasp) { return grasp.certificate ? badge(true, "yes") : text("no"); }
 
 Markup grasp_table(const GraspPart& part) {
-  Table table("All grasps, the best first", {"grasp", "group", "state", "\u03B5", "l*", "slack (rad)", "posture",
-                                             "contacts", "touching links", "arm solutions", "certified", "verified"});
+  Table table(
+      part.arm.empty() ? "All grasps, the best first" : concat({"All grasps of arm ", part.arm, ", the best first"}),
+      {"grasp", "group", "state", "\u03B5", "l*", "slack (rad)", "posture", "contacts", "touching links",
+       "arm solutions", "certified", "verified"});
   for (const auto& item : part.items) {
     const auto& grasp = item.grasp;
     std::vector<std::string> links;
@@ -156,23 +159,38 @@ Markup conventions(const GraspPart& part) {
   return out;
 }
 
-}  // namespace
+bool is_empty(const GraspPart& part) { return part.items.empty() && part.searches.empty(); }
 
-Markup grasp_section(const ReportInput& input) {
-  if (!input.grasps || (input.grasps->items.empty() && input.grasps->searches.empty())) {
-    return note("No grasp has been found or searched yet.");
-  }
-  const auto& part = *input.grasps;
-  const auto groups = group_names(part);
-  const auto stage = stage_of(input);
-  Markup out = paragraph(concat({grasps_of_object(part, static_cast<std::int64_t>(part.items.size())), "."}));
+Markup grasps_of_hand(const GraspPart& part, const std::optional<GraspStage>& stage) {
+  Markup out;
+  if (!part.arm.empty()) out += subheading(concat({"Arm ", part.arm}));
+  out += paragraph(concat({grasps_of_object(part, static_cast<std::int64_t>(part.items.size())), "."}));
   if (!part.items.empty()) {
     out += stage ? picture_key(*stage) : note("The hand's model or the object's shape was not given: no pictures.");
   }
   out += conventions(part);
-  for (const auto& group : groups) out += group_section(part, stage ? &*stage : nullptr, group);
-  if (!part.items.empty()) out += subheading("All grasps");
+  for (const auto& group : group_names(part)) out += group_section(part, stage ? &*stage : nullptr, group);
+  if (!part.items.empty())
+    out += subheading(concat({"All grasps", part.arm.empty() ? "" : concat({" of arm ", part.arm})}));
   if (!part.items.empty()) out += grasp_table(part);
+  return out;
+}
+
+}  // namespace
+
+Markup grasp_section(const ReportInput& input) {
+  const bool nothing = std::all_of(input.further_hands.begin(), input.further_hands.end(),
+                                   [](const FurtherHand& further) { return is_empty(further.grasps); });
+  if (!input.grasps || (is_empty(*input.grasps) && nothing)) {
+    return note("No grasp has been found or searched yet.");
+  }
+  const auto stage = [&](const robot::RobotModel& hand, const GraspPart& part) {
+    return input.scene ? stage_of(hand, *input.scene, part.object) : std::nullopt;
+  };
+  Markup out = grasps_of_hand(*input.grasps, input.hand ? stage(*input.hand, *input.grasps) : std::nullopt);
+  for (const auto& further : input.further_hands) {
+    out += grasps_of_hand(further.grasps, stage(further.hand, further.grasps));
+  }
   return out;
 }
 

@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 
 #include "core/require.hpp"
 #include "report/paper_tables.hpp"
-#include "report/scene_drawing.hpp"
 #include "report/sections.hpp"
 
 namespace opponens::report {
@@ -87,6 +85,16 @@ Markup table_two(const PathPart& part) {
   return out;
 }
 
+/// The grasps' ids, each with its arm where there are several.
+Markup reached_words(const std::vector<ReachedGrasp>& reached) {
+  Markup words;
+  for (const auto& grasp : reached) {
+    words.html += concat({words.html.empty() ? "" : " and ", identifier(grasp.id).html,
+                          grasp.arm.empty() ? "" : concat({" (", escape(grasp.arm), ")"})});
+  }
+  return words;
+}
+
 void run_row(Table& table, const PlanRun& run) {
   const auto& result = run.result;
   const bool solved = result.status == PlanStatus::solved;
@@ -97,7 +105,7 @@ void run_row(Table& table, const PlanRun& run) {
   }
   const auto length = [&](std::optional<double> value) { return text(solved && value ? fixed(*value, 2) : "n/a"); };
   table.row({text(run.planner), text(std::to_string(run.seed)), badge(solved, words(result.status)),
-             run.goal_grasp.empty() ? text("n/a") : identifier(run.goal_grasp), text(grouped(result.iterations)),
+             run.reached.empty() ? text("n/a") : reached_words(run.reached), text(grouped(result.iterations)),
              text(grouped(result.collision_checks)), length(result.length), length(result.length_l1),
              length(run.shortened_length), text(likeness)});
 }
@@ -115,121 +123,6 @@ Markup run_table(const PathPart& part) {
   }
   constexpr std::size_t kFew = 12;
   return part.runs.size() <= kFew ? out : details(concat({"all ", std::to_string(part.runs.size()), " runs"}), out);
-}
-
-/// A place on the path: row + fraction of the way to the next one.
-double place_at(const Eigen::MatrixXd& path, Eigen::Index last, double share) {
-  std::vector<double> covered{0.0};
-  for (Eigen::Index i = 1; i <= last; ++i) covered.push_back(covered.back() + (path.row(i) - path.row(i - 1)).norm());
-  const double wanted = share * covered.back();
-  const auto found = std::upper_bound(covered.begin(), covered.end(), wanted);
-  if (found == covered.end()) return static_cast<double>(last);
-  const auto next = found - covered.begin();
-  return static_cast<double>(next - 1) + (wanted - *(found - 1)) / (*found - *(found - 1));
-}
-
-/// The row at a place, between two stored ones.
-Eigen::VectorXd at_place(const Eigen::MatrixXd& rows, double place) {
-  const auto row = static_cast<Eigen::Index>(place);
-  const Eigen::Index next = std::min(row + 1, rows.rows() - 1);
-  return rows.row(row).transpose() + (place - static_cast<double>(row)) * (rows.row(next) - rows.row(row)).transpose();
-}
-
-struct Snapshot {
-  double place;
-  std::string name;
-};
-
-std::vector<Snapshot> snapshots(const PathPart& part) {
-  const Eigen::Index last = part.path.waypoints.rows() - 1;
-  const Eigen::Index middle_end = part.pregrasp > 0 ? part.pregrasp : last;
-  const int between = std::max(1, part.pictures - (part.pregrasp > 0 ? 3 : 2));
-  std::vector<Snapshot> shots{{0.0, "start"}};
-  for (int i = 1; i <= between; ++i) {
-    const double share = static_cast<double>(i) / (between + 1);
-    const std::string end = part.pregrasp > 0 ? " of the way to the pre-grasp" : " of the way";
-    shots.push_back({place_at(part.path.waypoints, middle_end, share), percent(share, 0) + end});
-  }
-  if (part.pregrasp > 0) shots.push_back({static_cast<double>(part.pregrasp), "pre-grasp"});
-  shots.push_back({static_cast<double>(last), part.pregrasp > 0 ? "grasp" : "end"});
-  return shots;
-}
-
-std::string snapshot_caption(const PathPart& part, const Snapshot& shot) {
-  if (part.times.size() == 0) return shot.name;
-  return concat({shot.name, ", t = ", fixed(at_place(part.times, shot.place)[0], 2), " s"});
-}
-
-/// Where the palm passes, in the world; at most about 120 points.
-std::vector<Eigen::Vector3d> palm_trail(const robot::RobotModel& robot, const robot::Scene& scene,
-                                        const std::vector<Eigen::VectorXd>& configurations) {
-  std::vector<Eigen::Vector3d> trail;
-  std::vector<Eigen::Isometry3d> X_RL;
-  const std::size_t step = std::max<std::size_t>(1, configurations.size() / 120);
-  for (std::size_t i = 0; i < configurations.size(); i += step) {
-    robot.link_poses(configurations[i], X_RL);
-    trail.push_back(scene.X_WR * X_RL[static_cast<std::size_t>(robot.palm())].translation());
-  }
-  if (configurations.empty()) return trail;
-  robot.link_poses(configurations.back(), X_RL);
-  trail.push_back(scene.X_WR * X_RL[static_cast<std::size_t>(robot.palm())].translation());
-  return trail;
-}
-
-struct CameraSetting {
-  Camera camera;
-  std::string words;
-  double width, height;
-  const char* css_class;
-};
-
-constexpr double kDegree = std::numbers::pi / 180.0;
-
-Markup snapshot_rows(const ReportInput& input) {
-  const auto& part = *input.path;
-  const auto& robot = *input.robot;
-  const auto& scene = *input.scene;
-  const std::string object = input.grasps ? input.grasps->object : scene.object;
-  std::vector<Eigen::VectorXd> all;
-  const Eigen::VectorXd rest = rest_configuration(robot);
-  for (Eigen::Index i = 0; i < part.path.waypoints.rows(); ++i) {
-    all.push_back(robot.clip(by_name(robot, part.path.joint_names, part.path.waypoints.row(i).transpose(), rest)));
-  }
-  const auto shots = snapshots(part);
-  std::vector<Eigen::VectorXd> shown;
-  shown.reserve(shots.size());
-  for (const auto& shot : shots) {
-    shown.push_back(robot.clip(by_name(robot, part.path.joint_names, at_place(part.path.waypoints, shot.place), rest)));
-  }
-  const auto trail = palm_trail(robot, scene, all);
-  const DrawnScene drawn = drawn_scene(robot, scene, object, 5000);
-  const std::vector<CameraSetting> cameras{
-      {{42.0 * kDegree, 22.0 * kDegree},
-       "from behind the robot's left shoulder, 42\u00B0 off the line from robot to object, 22\u00B0 above the horizon",
-       520.0,
-       440.0,
-       "shots"},
-      {{-75.0 * kDegree, 12.0 * kDegree},
-       "from the robot's right, 75\u00B0 off that line, 12\u00B0 above the horizon",
-       260.0,
-       240.0,
-       "shots small"}};
-  Markup out;
-  for (const auto& setting : cameras) {
-    const View view = scene_view(robot, scene, object, drawn, setting.camera, shown, setting.width, setting.height);
-    std::vector<Markup> figures;
-    for (std::size_t i = 0; i < shots.size(); ++i) {
-      const std::string caption = snapshot_caption(part, shots[i]);
-      figures.push_back(figure(
-          draw_scene(robot, scene, drawn, view, shown[i], trail, concat({"Robot and scene: ", caption})), caption));
-    }
-    out += subheading(concat({"Seen ", setting.words}));
-    out += row_of(figures, setting.css_class);
-  }
-  out += note(
-      "Blue line: the way of the palm, from the open to the filled dot. Robot and object show faintly through "
-      "what hides them. Shapes are the collision geometry.");
-  return out;
 }
 
 Markup curves(const ReportInput& input) {
@@ -289,11 +182,14 @@ Markup path_section(const ReportInput& input) {
     const auto& run = part.runs.empty() ? PlanRun{} : part.runs.front();
     Markup words{concat({"<p>Path ", identifier(part.id).html, ", planner ", escape(run.planner), ", seed ",
                          std::to_string(run.seed)})};
-    if (!part.goal_grasp.empty()) words.html += concat({", reaching grasp ", identifier(part.goal_grasp).html});
+    if (!part.reached.empty()) {
+      words.html += concat(
+          {part.reached.size() == 1 ? ", reaching grasp " : ", reaching grasps ", reached_words(part.reached).html});
+    }
     words.html += concat({": ", std::to_string(part.path.waypoints.rows()),
                           " waypoints, shortcuts and closing segment included.</p>\n"});
     out += words;
-    out += input.robot && input.scene ? snapshot_rows(input)
+    out += input.robot && input.scene ? path_snapshots(input)
                                       : note("The robot's model or the scene was not given: no snapshots.");
     out += curves(input);
   } else {

@@ -57,6 +57,15 @@ std::string grasp_words(const GraspPart& part) {
   return words;
 }
 
+std::string grasp_words(const ReportInput& input) {
+  if (input.further_hands.empty()) return grasp_words(*input.grasps);
+  std::string words = concat({"arm ", input.grasps->arm, ": ", grasp_words(*input.grasps)});
+  for (const auto& further : input.further_hands) {
+    words += concat({"; arm ", further.grasps.arm, ": ", grasp_words(further.grasps)});
+  }
+  return words;
+}
+
 std::string path_words(const PathPart& part) {
   if (part.runs.empty()) return "not available";
   const auto& run = part.runs.front();
@@ -97,7 +106,7 @@ Markup summary_section(const ReportInput& input) {
   table.row({text("recordings"), text(input.demonstrations ? recordings_words(*input.demonstrations) : missing)});
   table.row({text("groups"), text(input.demonstrations ? group_words(*input.demonstrations) : missing)});
   table.row({text("synergies kept (k)"), text(input.synergies ? synergy_words(*input.synergies) : missing)});
-  table.row({text("grasps"), text(input.grasps ? grasp_words(*input.grasps) : missing)});
+  table.row({text("grasps"), text(input.grasps ? grasp_words(input) : missing)});
   table.row({text("path length"), text(input.path ? path_words(*input.path) : missing)});
   table.row({text("human-likeness"), text(input.path ? likeness_words(*input.path) : missing)});
   table.row({text("verification"), input.verification ? verdict(*input.verification) : text(missing)});

@@ -20,6 +20,8 @@ Markup synergy_section(const ReportInput& input);
 Markup synergy_drawing_section(const ReportInput& input);
 Markup grasp_section(const ReportInput& input);
 Markup path_section(const ReportInput& input);
+/// Robot and scene along the path, of path_section. input: with path, robot and scene.
+Markup path_snapshots(const ReportInput& input);
 Markup verification_section(const ReportInput& input);
 Markup provenance_section(const ReportInput& input);
 Markup run_section(const ReportInput& input);

@@ -145,7 +145,7 @@ void check_arm_solutions(const Grasp& grasp, const robot::RobotModel& robot, con
     Eigen::VectorXd q(robot.dof());
     q << q_arm, q_hand;
     if (!robot.within_limits(q, tolerance)) verdict.fail(name + " is outside the joint limits");
-    check_palm(robot, q, X_RO * X_OH, name, tolerance, verdict);
+    check_palm(robot, q, robot.palm(), X_RO * X_OH, name, tolerance, verdict);
   };
   for (std::size_t i = 0; i < grasp.arm_solutions.size(); ++i) {
     const std::string name = "arm solution " + std::to_string(i);

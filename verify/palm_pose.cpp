@@ -7,9 +7,9 @@
 
 namespace opponens::verify {
 
-void check_palm(const robot::RobotModel& robot, const Eigen::VectorXd& q, const Eigen::Isometry3d& X_RH,
+void check_palm(const robot::RobotModel& robot, const Eigen::VectorXd& q, int palm, const Eigen::Isometry3d& X_RH,
                 const std::string& name, double tolerance, Verdict& verdict) {
-  const Eigen::Isometry3d X = robot.link_poses(q)[static_cast<std::size_t>(robot.palm())];
+  const Eigen::Isometry3d X = robot.link_poses(q)[static_cast<std::size_t>(palm)];
   const double distance = (X.translation() - X_RH.translation()).norm();
   // |R - R'|_F = 2 sqrt(2) sin(angle / 2), exact near zero where the trace is not.
   const double angle = 2.0 * std::asin(std::min(1.0, (X.linear() - X_RH.linear()).norm() / std::sqrt(8.0)));

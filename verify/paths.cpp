@@ -128,14 +128,46 @@ void check_ends(const JointPath& path, const PathClaim& claim, const robot::Robo
   check_configuration(path, pregrasp, claim.goal, "pre-grasp", settings.tolerance, verdict);
   if (claim.grasp) check_configuration(path, last, *claim.grasp, "grasp", settings.tolerance, verdict);
   const Eigen::Isometry3d X_RW = scene.X_WR.inverse();
-  if (claim.X_WH_pregrasp) {
-    check_palm(robot, path.waypoints.row(pregrasp).transpose(), X_RW * *claim.X_WH_pregrasp, "the path's pre-grasp",
-               settings.pose_tolerance, verdict);
+  for (std::size_t i = 0; i < claim.hands.size(); ++i) {
+    const robot::DrivenArm& arm = robot.arms()[i];
+    const std::string of = robot.arms().size() > 1 ? " of arm " + arm.name : "";
+    const auto check = [&](Eigen::Index row, const std::optional<Eigen::Isometry3d>& X_WH, const std::string& name) {
+      if (!X_WH) return;
+      check_palm(robot, path.waypoints.row(row).transpose(), arm.palm, X_RW * *X_WH, name + of, settings.pose_tolerance,
+                 verdict);
+    };
+    check(pregrasp, claim.hands[i].X_WH_pregrasp, "the path's pre-grasp");
+    check(last, claim.hands[i].X_WH_grasp, "the path's end");
   }
-  if (claim.X_WH_grasp) {
-    check_palm(robot, path.waypoints.row(last).transpose(), X_RW * *claim.X_WH_grasp, "the path's end",
-               settings.pose_tolerance, verdict);
+}
+
+/// Whether a link is the palm or below it.
+bool belongs_to(const robot::RobotModel& robot, const std::string& link, int palm) {
+  const auto& links = robot.links();
+  const auto named = std::find_if(links.begin(), links.end(), [&](const robot::Link& one) { return one.name == link; });
+  if (named == links.end()) return false;
+  auto index = static_cast<int>(named - links.begin());
+  while (index != palm && index >= 0) {
+    const int joint = links[static_cast<std::size_t>(index)].joint;
+    index = joint < 0 ? -1 : robot.description().joints[static_cast<std::size_t>(joint)].parent;
   }
+  return index == palm;
+}
+
+/// The pairs that may touch while closing: each hand's own links with its own object. A claim for another hand's link
+/// would leave that one unwatched, so it fails.
+std::set<NamePair> allowed_contacts(const PathClaim& claim, const robot::RobotModel& robot, Verdict& verdict) {
+  std::set<NamePair> contacts;
+  for (std::size_t i = 0; i < claim.hands.size(); ++i) {
+    for (const std::string& link : claim.hands[i].contact_links) {
+      if (belongs_to(robot, link, robot.arms()[i].palm)) {
+        contacts.emplace(link, claim.hands[i].object);
+      } else {
+        verdict.fail("a contact with " + claim.hands[i].object + " is by " + link + ", which is no link of that hand");
+      }
+    }
+  }
+  return contacts;
 }
 
 }  // namespace
@@ -146,12 +178,13 @@ PathChecker::PathChecker(const robot::RobotModel& robot, const robot::Scene& sce
 Verdict PathChecker::check(const JointPath& path, const PathClaim& claim, const PathCheckSettings& settings) {
   require(settings.tolerance >= 0.0 && settings.pose_tolerance >= 0.0,
           "PathCheckSettings: tolerances must not be negative");
+  require(claim.hands.empty() || claim.hands.size() == robot_.arms().size(),
+          "PathClaim: hands must be one for each arm, or none");
   Verdict verdict;
   if (!check_form(path, claim, robot_, verdict)) return verdict;
   check_ends(path, claim, robot_, scene_, settings, verdict);
   check_limits(path, robot_, std::max(settings.tolerance, 1e-9), verdict);
-  std::set<NamePair> contacts;
-  for (const std::string& link : claim.contact_links) contacts.emplace(link, claim.object);
+  const std::set<NamePair> contacts = allowed_contacts(claim, robot_, verdict);
   PathProof proof(robot_, bound_, bodies_, contacts, settings.proof);
   walk_path(path, claim, proof);
   judge(proof, settings.proof, verdict);

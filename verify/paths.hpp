@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -25,22 +26,29 @@ struct PathCheckSettings {
   double pose_tolerance = 1e-6;  ///< m and rad, of the palm at pre-grasp and grasp
 };
 
-/// What a path claims.
-struct PathClaim {
-  Eigen::VectorXd start;                           ///< [d] rad
-  Eigen::VectorXd goal;                            ///< [d] rad, the pre-grasp with the arm's solution
-  std::optional<Eigen::VectorXd> grasp;            ///< [d] rad, the path's end when it has a closing segment
+/// What a path claims of a hand.
+struct HandClaim {
   std::optional<Eigen::Isometry3d> X_WH_pregrasp;  ///< palm in the world that the pre-grasp asks for
   std::optional<Eigen::Isometry3d> X_WH_grasp;     ///< and the grasp
-  Eigen::Index closing_from = -1;                  ///< waypoint at which that segment begins (the pre-grasp)
   std::string object;                              ///< scene body that the contacts touch
   std::set<std::string> contact_links;  ///< of the grasp's stored contacts: may touch the object while closing
 };
 
-/// Re-checks paths of one robot in one scene, whose trees are built once: joint names and limits, ends, the palm's
-/// poses there, and, for the whole motion and not at samples of it, that every pair of bodies that must not touch keeps
-/// the clearance and that the closing segment's contacts stay below their depth (PathProof). What the proof cannot show
-/// fails. One reason per pair of bodies, at its worst place; at most ten of them.
+/// What a path claims.
+struct PathClaim {
+  Eigen::VectorXd start;                 ///< [d] rad
+  Eigen::VectorXd goal;                  ///< [d] rad, the pre-grasp with the arms' solutions
+  std::optional<Eigen::VectorXd> grasp;  ///< [d] rad, the path's end when it has a closing segment
+  Eigen::Index closing_from = -1;        ///< waypoint at which that segment begins (the pre-grasp)
+  /// One for each of RobotModel::arms(), in their order; empty: nothing of the palms is claimed, and nothing may touch.
+  std::vector<HandClaim> hands{};
+};
+
+/// Re-checks paths of one robot in one scene, whose trees are built once: joint names and limits, ends, the palms'
+/// poses there, that the links in contact are below the palm that claims them, and, for the whole motion and not at
+/// samples of it, that every pair of bodies that must not touch keeps the clearance and that the closing segment's
+/// contacts stay below their depth (PathProof). What the proof cannot show fails. One reason per pair of bodies, at its
+/// worst place; at most ten of them.
 class PathChecker {
  public:
   /// Both are referred to and must outlive it.

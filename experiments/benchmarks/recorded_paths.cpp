@@ -29,8 +29,8 @@ Recorded read_paths(const std::string& file, const robot::RobotModel& robot, con
     claim.start = path.waypoints.row(0).transpose();
     claim.goal = path.waypoints.row(claim.closing_from).transpose();
     claim.grasp = path.waypoints.row(path.waypoints.rows() - 1).transpose();
-    claim.object = object;
-    for (const auto& link : one.at("contact_links")) claim.contact_links.insert(link.get<std::string>());
+    claim.hands = {{{}, {}, object, {}}};
+    for (const auto& link : one.at("contact_links")) claim.hands[0].contact_links.insert(link.get<std::string>());
     recorded.paths.push_back(path);
     recorded.claims.push_back(claim);
   }

@@ -25,11 +25,11 @@ void verify_answer(const Problem& problem, const Answer& answer, verify::PathChe
   const verify::PathClaim claim{.start = problem.setting().start,
                                 .goal = problem.goals()[static_cast<std::size_t>(answer.goal)].q,
                                 .grasp = problem.q_grasp(answer.goal),
-                                .X_WH_pregrasp = X_WO * grasp.X_OH_pregrasp,
-                                .X_WH_grasp = X_WO * grasp.X_OH,
                                 .closing_from = answer.path.waypoints.rows() - 1,
-                                .object = problem.setting().object,
-                                .contact_links = std::move(links)};
+                                .hands = {{.X_WH_pregrasp = X_WO * grasp.X_OH_pregrasp,
+                                           .X_WH_grasp = X_WO * grasp.X_OH,
+                                           .object = problem.setting().object,
+                                           .contact_links = std::move(links)}}};
   const verify::Verdict verdict = checker.check(problem.closed(answer.path, answer.goal), claim);
   record.verified = verdict.ok;
   record.clearance = verdict.worst_clearance;

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/synergy_box.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include <gtest/gtest.h>
 
@@ -103,6 +105,32 @@ TEST(Contains, LooksAtTheKeptCoordinatesOnly) {
   EXPECT_FALSE(contains(box, Eigen::Vector2d(1.51, 1)));
   EXPECT_TRUE(contains(box, Eigen::Vector2d(1.51, 1), 0.02));
   EXPECT_TRUE(project(box, Eigen::Vector2d(3, 7)).isApprox(Eigen::Vector2d(1.5, 1)));
+}
+
+TEST(ProductBox, ProjectsEachHandAlone) {
+  for (int trial = 0; trial < 50; ++trial) {
+    const auto [first, q_first] = random_case(trial);
+    const auto [second, q_second] = random_case(trial + 7);
+    const SynergyBox both = product_box({first, second});
+    Eigen::VectorXd q(q_first.size() + q_second.size());
+    q << q_first, q_second;
+    const Eigen::VectorXd p = project(both, q);
+    EXPECT_LT((p.head(q_first.size()) - project(first, q_first)).norm(), 1e-12 * (1.0 + q.norm())) << trial;
+    EXPECT_LT((p.tail(q_second.size()) - project(second, q_second)).norm(), 1e-12 * (1.0 + q.norm())) << trial;
+    EXPECT_EQ(contains(both, q), contains(first, q_first) && contains(second, q_second)) << trial;
+    const Eigen::MatrixXd gram = both.axes.transpose() * both.axes;
+    EXPECT_LT((gram - Eigen::MatrixXd::Identity(gram.rows(), gram.cols())).norm(), 1e-10) << trial;
+    EXPECT_NEAR(both.alpha, 1.0 - 0.95 * 0.95, 1e-15);
+    EXPECT_EQ(both.beta, std::max(first.beta, second.beta));
+  }
+}
+
+TEST(ProductBox, OfOneIsThatOne) {
+  const auto [box, q] = random_case(3);
+  const SynergyBox product = product_box({box});
+  EXPECT_EQ(project(product, q), project(box, q));
+  EXPECT_EQ(product.alpha, box.alpha);
+  EXPECT_THROW(product_box({}), std::invalid_argument);
 }
 
 }  // namespace

@@ -3,12 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <stdexcept>
+#include <vector>
 
 #include "analysis/synergy_box.hpp"
 #include "motion/blended_path.hpp"
 #include "motion/edge_check.hpp"
-#include "motion/hands_projection.hpp"
 #include "motion/shortcut.hpp"
 #include "motion/syn_planner.hpp"
 #include "motion/time_optimal.hpp"
@@ -36,8 +35,8 @@ TEST(DualArmPlan, BothArmsAtOnceEachHandAlongItsOwnBox) {
   ASSERT_EQ(robot.dof(), 44);
   const robot::CollisionChecker checker(robot, robot::load_scene(models / "scenes/dual_bookshelf.yaml"));
   const World world = make_world(checker, robot, 0.02);
-  std::vector<HandBox> before;
-  std::vector<HandBox> after;
+  std::vector<SynergyBox> before;
+  std::vector<SynergyBox> after;
   const Eigen::VectorXd start = robot.rest();
   Eigen::VectorXd goal = start;
   for (const robot::DrivenArm& arm : robot.arms()) {
@@ -45,46 +44,31 @@ TEST(DualArmPlan, BothArmsAtOnceEachHandAlongItsOwnBox) {
     goal[arm.arm.first + 5] += 0.5;
     goal.segment(arm.hand.first, arm.hand.count).array() += 0.2;
     goal = robot.clip(goal);
-    before.push_back({box_around(start.segment(arm.hand.first, arm.hand.count)), arm.hand});
-    after.push_back({box_around(goal.segment(arm.hand.first, arm.hand.count)), arm.hand});
+    before.push_back(box_around(start.segment(arm.hand.first, arm.hand.count)));
+    after.push_back(box_around(goal.segment(arm.hand.first, arm.hand.count)));
   }
-  const PlanQuery query{{start, hands_projection(before, robot.lower(), robot.upper()), -1},
-                        {{goal, hands_projection(after, robot.lower(), robot.upper()), 0}},
-                        robot.joint_names(),
-                        robot.lower(),
-                        robot.upper(),
-                        robot.weights()};
+  const SynergyBox start_box = analysis::product_box(before);
+  const SynergyBox goal_box = analysis::product_box(after);
   PlannerSettings settings;
   settings.step = 0.8;
   settings.full_space_probability = 0.0;
-  const PlanResult planned = plan(query, world, settings, 1);
+  const auto planned_once = [&] {
+    return plan(start, start_box, {{goal, goal_box, 0}}, robot.joint_names(), robot.hand(), robot.lower(),
+                robot.upper(), robot.weights(), world, settings, 1);
+  };
+  const PlanResult planned = planned_once();
   ASSERT_EQ(planned.status, PlanStatus::solved) << planned.detail;
-  EXPECT_EQ(plan(query, world, settings, 1).path.waypoints, planned.path.waypoints);
+  EXPECT_EQ(planned_once().path.waypoints, planned.path.waypoints);
 
   const FollowedBoxes boxes =
-      followed_boxes(planned.path.waypoints, planned.bridge_row, hands_distance(before), hands_distance(after));
+      followed_boxes(planned.path.waypoints, planned.bridge_row, box_distance(start_box, robot.hand()),
+                     box_distance(goal_box, robot.hand()));
   const Shortcut shorter = shortcut_in_boxes(planned.path, robot.weights(), world, boxes, robot.arm(), 1);
   EXPECT_TRUE(change_row(boxes, shorter.path.waypoints));
   const RateLimits limits{robot.velocity(), robot.acceleration()};
   const Trajectory trajectory = time_optimal(blend_corners(shorter.path.waypoints, world, {}, &boxes), limits, {});
   EXPECT_TRUE(change_row(boxes, trajectory.positions));
   EXPECT_GE(trajectory.times[trajectory.times.size() - 1], least_duration(trajectory.positions, limits));
-}
-
-TEST(DualArmPlan, EachHandIsProjectedAlone) {
-  const PlanningGroup left{"left", {}, 2, 16};
-  const PlanningGroup right{"right", {}, 18, 16};
-  const SynergyBox first = box_around(Eigen::VectorXd::Constant(16, 0.1));
-  const SynergyBox second = box_around(Eigen::VectorXd::Constant(16, 0.9));
-  const Eigen::VectorXd lower = Eigen::VectorXd::Constant(34, -3.0);
-  const Eigen::VectorXd q = Eigen::VectorXd::LinSpaced(34, -1.0, 2.0);
-  const Eigen::VectorXd projected = hands_projection({{first, left}, {second, right}}, lower, -lower)(q);
-  EXPECT_EQ(projected.head(2), q.head(2));
-  EXPECT_LT((projected.segment(2, 16) - analysis::project(first, q.segment(2, 16))).norm(), 1e-12);
-  EXPECT_LT((projected.tail(16) - analysis::project(second, q.tail(16))).norm(), 1e-12);
-  EXPECT_LT(hands_distance({{first, left}, {second, right}})(projected), 1e-12);
-  EXPECT_GT(hands_distance({{first, left}, {second, right}})(q), 0.1);
-  EXPECT_THROW(hands_projection({{first, left}, {second, {"x", {}, 10, 16}}}, lower, -lower), std::invalid_argument);
 }
 
 }  // namespace

@@ -75,7 +75,6 @@ TEST(FollowedBoxes, DistanceIsHandComputedAndConvex) {
   const BoxDistance distance = box_distance(line_box(0.5), toy.hand);
   EXPECT_DOUBLE_EQ(distance(Eigen::Vector4d(1.7, 0, 0.3, 0.5)), 0.0);
   EXPECT_DOUBLE_EQ(distance(Eigen::Vector4d(0, 0, 1.1, 0.1)), 0.5);
-  EXPECT_DOUBLE_EQ(farthest({distance, box_distance(line_box(0.0), toy.hand)})(Eigen::Vector4d(0, 0, 0, 0.2)), 0.3);
   Rng rng = stream(3, "test/followed_boxes");
   for (int i = 0; i < 1000; ++i) {
     const Eigen::Vector4d a = Eigen::Vector4d::NullaryExpr([&] { return rng.uniform(-2, 2); });
@@ -139,7 +138,6 @@ TEST(FollowedBoxes, RefusesAPathThatIsFurtherOff) {
   EXPECT_FALSE(change_row(p.boxes, path.waypoints));
   EXPECT_THROW(shortcut_in_boxes(path, p.toy.weights, p.toy.world(), p.boxes, kArm, 1), std::invalid_argument);
   EXPECT_THROW(followed_boxes(path.waypoints, -1, p.boxes.start, p.boxes.goal), std::invalid_argument);
-  EXPECT_THROW(farthest({}), std::invalid_argument);
 }
 
 }  // namespace

@@ -212,6 +212,32 @@ TEST_F(RobotWorld, ContactDepthOfAFingertipInTheBottle) {
   EXPECT_FALSE(robot::CollisionChecker(robot, moved).free(clear));
 }
 
+TEST_F(RobotWorld, ContactDepthOfSeveralHandsIsOfEachWithItsOwnObject) {
+  // A ball at each of two fingertips, of different depth there. The links stand for two hands.
+  const Eigen::VectorXd q = start();
+  robot::Scene balls = scene;
+  balls.bodies.clear();
+  std::vector<std::string> links;
+  for (const auto& [tip, deep] : {std::pair{0U, 0.002}, {1U, 0.004}}) {
+    const robot::SurfacePoint& point = robot.description().tips[tip];
+    const Eigen::Isometry3d X_WL = scene.X_WR * robot.link_poses(q)[static_cast<std::size_t>(point.link)];
+    const Eigen::Vector3d center = X_WL * point.p_L + (0.01 - deep) * (X_WL.linear() * point.n_L);
+    balls.bodies.push_back({"ball " + std::to_string(tip), Eigen::Isometry3d(Eigen::Translation3d(center)), {}});
+    balls.bodies.back().geometry.push_back({robot::Sphere{0.01}, Eigen::Isometry3d::Identity()});
+    links.push_back(robot.links()[static_cast<std::size_t>(point.link)].name);
+  }
+  const double shallow = ContactDepth(robot, balls, "ball 0", {links[0]}, 0.0005)(q);
+  const double deep = ContactDepth(robot, balls, "ball 1", {links[1]}, 0.0005)(q);
+  EXPECT_NEAR(shallow, 0.002, 2e-4);
+  EXPECT_NEAR(deep, 0.004, 2e-4);
+  const auto both = [&](const std::string& first, const std::string& second) {
+    return ContactDepth(robot, balls, {{first, {links[0]}}, {second, {links[1]}}}, 0.0005)(q);
+  };
+  EXPECT_EQ(both("ball 0", "ball 1"), deep);
+  EXPECT_EQ(both("ball 0", "ball 0"), shallow);
+  EXPECT_EQ(both("ball 1", "ball 0"), 0.0) << "the other's object counts for neither";
+}
+
 TEST_F(RobotWorld, ContactDepthIsThatOfTheDeepestSurfacePoint) {
   const auto& tip = robot.description().tips.front();
   const robot::Link& link = robot.links()[static_cast<std::size_t>(tip.link)];

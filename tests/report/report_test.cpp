@@ -147,7 +147,7 @@ TEST(Report, HostileTextStaysText) {
   input.scene->bodies[0].name = evil;
   input.grasps->object = evil;
   input.path->id = evil;
-  input.path->goal_grasp = evil;
+  input.path->reached = {{evil, evil}};
   input.path->runs[0].planner = evil;
   input.path->runs[0].result.detail = evil;
   input.path->runs[0].human_likeness[0].reference = evil;

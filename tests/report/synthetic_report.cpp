@@ -212,7 +212,7 @@ GraspPart grasps(const robot::RobotModel& hand, Rng& rng) {
 PathPart path(const robot::RobotModel& robot, const robot::Scene& scene, const GraspPart& grasps, Rng& rng) {
   PathPart part;
   part.id = fake_id(rng);
-  part.goal_grasp = grasps.items.front().id;
+  part.reached = {{"", grasps.items.front().id}};
   part.path.joint_names = robot.joint_names();
   Eigen::VectorXd start = rest_configuration(robot);
   start.head(6) << 0.0, -1.57, 1.57, -1.57, -1.57, 0.0;

@@ -55,6 +55,46 @@ inline robot::RobotModel gantry() {
   return robot::RobotModel(d);
 }
 
+/// Two of them side by side, right at y = -0.5 and left at y = 0.5, driven at once: q = [x y of each; f of each].
+inline robot::RobotModel two_gantries() {
+  robot::RobotDescription d = gantry().description();
+  robot::RobotDescription both;
+  both.name = "two gantries";
+  both.links = {{"root", -1, {}}};
+  std::vector<std::string> hands;
+  for (const auto& [arm, y] : {std::pair{std::string("right/"), -0.5}, {std::string("left/"), 0.5}}) {
+    const int first = static_cast<int>(both.links.size());
+    for (std::size_t i = 1; i < d.links.size(); ++i) {
+      robot::Link link = d.links[i];
+      link.name = arm + link.name;
+      link.joint += first - 1;
+      both.links.push_back(link);
+      robot::Joint joint = d.joints[i - 1];
+      joint.name = arm + joint.name;
+      joint.parent = i == 1 ? 0 : joint.parent + first - 1;
+      joint.child += first - 1;
+      if (i == 1) joint.X_PJ.translation().y() = y;
+      both.joints.push_back(joint);
+    }
+    both.arms.push_back({arm.substr(0, arm.size() - 1),
+                         {arm + "x", arm + "y"},
+                         {arm + "f"},
+                         arm + "palm",
+                         arm + "palm",
+                         {},
+                         {},
+                         Eigen::Vector3d::Ones()});
+    both.driven_arms.push_back(both.arms.back().name);
+    both.allowed_collisions.insert({{0, first}, {first, first + 1}, {first + 1, first + 2}});
+    both.arm_joints.insert(both.arm_joints.end(), {arm + "x", arm + "y"});
+    both.hand_joints.push_back(arm + "f");
+  }
+  both.palm_link = "right/palm";
+  both.arm_tip_link = "right/palm";
+  both.weights = Eigen::VectorXd::Ones(6);
+  return robot::RobotModel(both);
+}
+
 inline robot::SceneBody body(const std::string& name, const robot::Shape& shape, const Eigen::Vector3d& p) {
   robot::SceneBody result;
   result.name = name;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <stdexcept>
 
 #include "robot/mesh.hpp"
 #include "tests/verify/gantry.hpp"
@@ -23,6 +24,7 @@ class CheckPath : public ::testing::Test {
     path.waypoints << -0.5, 0.0, 0, 0.0, -0.2, 0, 0.5, 0.0, 0;  // around the wall's end at y = 0.1
     claim.start = path.waypoints.row(0).transpose();
     claim.goal = path.waypoints.row(2).transpose();
+    claim.hands.resize(1);
   }
   Verdict check() {
     if (!checker) checker = std::make_unique<PathChecker>(robot, scene);
@@ -125,16 +127,16 @@ TEST_F(CheckPath, ThePalmMustBeWhereTheGraspSays) {
   // Start, pre-grasp and grasp agree with the joint values that the claim names; only the poses tell.
   claim.grasp = claim.goal;
   claim.closing_from = 2;
-  claim.X_WH_pregrasp = Eigen::Isometry3d(Eigen::Translation3d(0.5, 0.0, 0.0));
-  claim.X_WH_grasp = claim.X_WH_pregrasp;
+  claim.hands[0].X_WH_pregrasp = Eigen::Isometry3d(Eigen::Translation3d(0.5, 0.0, 0.0));
+  claim.hands[0].X_WH_grasp = claim.hands[0].X_WH_pregrasp;
   EXPECT_TRUE(check().ok);
-  claim.X_WH_pregrasp->translation().y() = 2e-6;
+  claim.hands[0].X_WH_pregrasp->translation().y() = 2e-6;
   EXPECT_TRUE(fault_is("the path's pre-grasp puts the palm 0.002 mm and 0 rad off the grasp's pose"));
-  claim.X_WH_pregrasp->translation().y() = 0.0;
-  claim.X_WH_grasp->linear() = Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitX()).toRotationMatrix();
+  claim.hands[0].X_WH_pregrasp->translation().y() = 0.0;
+  claim.hands[0].X_WH_grasp->linear() = Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitX()).toRotationMatrix();
   EXPECT_TRUE(fault_is("the path's end puts the palm 0 mm and 0.1 rad off the grasp's pose"));
   // The robot stands somewhere else: so does the palm.
-  claim.X_WH_grasp->linear().setIdentity();
+  claim.hands[0].X_WH_grasp->linear().setIdentity();
   scene.X_WR.translation().z() = 0.01;
   checker.reset();
   EXPECT_TRUE(fault_is("the path's end puts the palm 10 mm"));
@@ -172,9 +174,9 @@ TEST_F(CheckPath, ClosingSegmentMayTouchItsContactsAlone) {
   claim.goal = path.waypoints.row(2).transpose();
   claim.grasp = path.waypoints.row(3).transpose();
   claim.closing_from = 2;
-  claim.object = "cube";
+  claim.hands[0].object = "cube";
   EXPECT_TRUE(fault_is("collision of finger and cube"));  // no contact is stored for the finger
-  claim.contact_links = {"finger"};
+  claim.hands[0].contact_links = {"finger"};
   Verdict verdict = check();
   EXPECT_TRUE(verdict.ok) << verdict.reasons.front();
   EXPECT_NEAR(verdict.worst_contact_penetration, 0.0005, 0.0001);
@@ -187,6 +189,78 @@ TEST_F(CheckPath, ClosingSegmentMayTouchItsContactsAlone) {
   EXPECT_TRUE(fault_is("waypoint 3 differs from the grasp"));
   claim.closing_from = 7;
   EXPECT_TRUE(fault_is("the closing segment begins at waypoint 7 of 4"));
+}
+
+/// Each finger of two hands pressed 0.5 mm into a cube of its own.
+class CheckPathOfTwoHands : public ::testing::Test {
+ protected:
+  CheckPathOfTwoHands() {
+    const auto cube =
+        std::make_shared<const robot::TriangleMesh>(robot::triangulate(robot::Box{Eigen::Vector3d(0.1, 0.1, 0.1)}));
+    scene.bodies = {body("right_cube", cube, {0.6595, -0.5, 0}), body("left_cube", cube, {0.6595, 0.5, 0})};
+    path.joint_names = robot.joint_names();
+    path.waypoints.resize(3, 6);
+    path.waypoints << 0, 0, 0, 0, 0, 0, 0.45, 0, 0.45, 0, 0, 0, 0.5, 0, 0.5, 0, 0, 0;
+    claim.start = path.waypoints.row(0).transpose();
+    claim.goal = path.waypoints.row(1).transpose();
+    claim.grasp = path.waypoints.row(2).transpose();
+    claim.closing_from = 1;
+    for (const auto& [arm, y] : {std::pair{std::string("right"), -0.5}, {std::string("left"), 0.5}}) {
+      claim.hands.push_back({Eigen::Isometry3d(Eigen::Translation3d(0.45, y, 0)),
+                             Eigen::Isometry3d(Eigen::Translation3d(0.5, y, 0)),
+                             arm + "_cube",
+                             {arm + "/finger"}});
+    }
+  }
+  Verdict check() { return PathChecker(robot, scene).check(path, claim); }
+  void expect_fault(const std::string& part) {
+    const Verdict verdict = check();
+    EXPECT_FALSE(verdict.ok) << "not seen: " << part;
+    std::string all;
+    for (const std::string& reason : verdict.reasons) all += reason + "; ";
+    EXPECT_NE(all.find(part), std::string::npos) << all;
+  }
+  robot::RobotModel robot = two_gantries();
+  robot::Scene scene;
+  JointPath path;
+  PathClaim claim;
+};
+
+TEST_F(CheckPathOfTwoHands, EachMayTouchItsOwnObject) {
+  const Verdict verdict = check();
+  EXPECT_TRUE(verdict.ok) << verdict.reasons.front();
+  EXPECT_NEAR(verdict.worst_contact_penetration, 0.0005, 0.0001);
+}
+
+TEST_F(CheckPathOfTwoHands, NeitherMayTouchTheOthersObject) {
+  // The left hand's cube is claimed to be the right one's: now both fingers are in collision.
+  std::swap(claim.hands[0].object, claim.hands[1].object);
+  expect_fault("collision of left/finger and left_cube");
+  expect_fault("collision of right/finger and right_cube");
+}
+
+TEST_F(CheckPathOfTwoHands, AContactIsOfTheHandThatClaimsIt) {
+  // That the right hand's grasp has a contact by the left finger does not let that one touch the right hand's object.
+  claim.hands[0].contact_links.insert("left/finger");
+  expect_fault("a contact with right_cube is by left/finger, which is no link of that hand");
+  claim.hands[0].contact_links = {"no such link"};
+  expect_fault("by no such link, which is no link of that hand");
+  claim.hands[0].contact_links.clear();
+  expect_fault("collision of right/finger and right_cube");
+}
+
+TEST_F(CheckPathOfTwoHands, BothPalmsMustBeWhereTheirGraspsSay) {
+  claim.hands[1].X_WH_pregrasp->translation().z() = 1e-3;
+  expect_fault("the path's pre-grasp of arm left puts the palm 1 mm");
+  claim.hands[1].X_WH_pregrasp->translation().z() = 0.0;
+  std::swap(claim.hands[0].X_WH_grasp, claim.hands[1].X_WH_grasp);
+  expect_fault("the path's end of arm right puts the palm 1000 mm");
+  expect_fault("the path's end of arm left puts the palm 1000 mm");
+}
+
+TEST_F(CheckPathOfTwoHands, AClaimForOneHandAloneIsRefused) {
+  claim.hands.pop_back();
+  EXPECT_THROW(check(), std::invalid_argument);
 }
 
 }  // namespace
