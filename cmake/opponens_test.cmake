@@ -5,7 +5,8 @@
 set(OPPONENS_PYTHON /usr/bin/python3)
 
 # opponens_test(name LABEL label [LONG patterns...] SOURCES ... LIBRARIES ...): one GoogleTest executable; each case is a
-# ctest test. Without OPPONENS_LONG_TESTS the cases that match a pattern of LONG are left out.
+# ctest test, or all of it is one without OPPONENS_TEST_CASES. Without OPPONENS_LONG_TESTS the cases that match a pattern
+# of LONG are left out.
 function(opponens_test name)
   cmake_parse_arguments(ARG "" "LABEL;TIMEOUT" "LONG;SOURCES;LIBRARIES" ${ARGN})
   if(NOT OPPONENS_LONG_TESTS AND ARG_LABEL MATCHES "release_only|statistical")
@@ -23,11 +24,16 @@ function(opponens_test name)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
   target_compile_definitions(${name} PRIVATE
     OPPONENS_SOURCE_DIR="${PROJECT_SOURCE_DIR}" OPPONENS_SHARED_DATA="${OPPONENS_SHARED_DATA}")
-  set(filter "")
+  set(filter "*")
   if(ARG_LONG AND NOT OPPONENS_LONG_TESTS)
     list(JOIN ARG_LONG ":" long)
-    set(filter TEST_FILTER "-${long}")
+    set(filter "-${long}")
   endif()
-  gtest_discover_tests(${name} ${filter} DISCOVERY_TIMEOUT 60 TEST_PREFIX "${name}/"
-    PROPERTIES LABELS "${ARG_LABEL}" TIMEOUT ${ARG_TIMEOUT})
+  if(OPPONENS_TEST_CASES)
+    gtest_discover_tests(${name} TEST_FILTER "${filter}" DISCOVERY_TIMEOUT 60 TEST_PREFIX "${name}/"
+      PROPERTIES LABELS "${ARG_LABEL}" TIMEOUT ${ARG_TIMEOUT})
+  else()
+    add_test(NAME ${name} COMMAND ${name} "--gtest_filter=${filter}" --gtest_brief=1)
+    set_tests_properties(${name} PROPERTIES LABELS "${ARG_LABEL}" TIMEOUT 1200)
+  endif()
 endfunction()

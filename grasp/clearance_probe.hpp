@@ -30,8 +30,8 @@ enum class Watch {
 
 /// Least distances of the links' surface points to what they watch for, at most 5 cm. Beyond 2 mm a point nearer by
 /// up to a tenth may be missed. Distances to the object come from its grid; within 2 mm those of the five least points
-/// are measured on the mesh. What a link was seen to keep is remembered, so that little is looked at again after a small
-/// motion: one probe per closing.
+/// are measured on the mesh. What a link was seen to keep is remembered, so that little is looked at again after a
+/// small motion: one probe per closing.
 class ClearanceProbe {
  public:
   explicit ClearanceProbe(const ClosingScene& scene);
@@ -79,7 +79,7 @@ class ClearanceProbe {
   std::vector<Seen> object_seen_;     ///< by link, from the object
   std::vector<Seen> obstacles_seen_;  ///< by link, from support and obstacles
   std::vector<Seen> hand_seen_;       ///< by link and other link
-  int last_link_ = -1;  ///< that was nearest to the object when last asked
+  int last_link_ = -1;                ///< that was nearest to the object when last asked
   Eigen::Vector3d last_p_L_ = Eigen::Vector3d::Zero();
   double obstacle_margin_;
   double self_margin_;

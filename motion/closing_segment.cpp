@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "motion/closing_segment.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <set>
@@ -10,11 +11,12 @@
 #include "core/require.hpp"
 #include "motion/continuous_check.hpp"
 #include "motion/edge_check.hpp"
+#include "motion/joint_groups.hpp"
 
 namespace opponens::motion {
 namespace {
 
-constexpr double kDepthShare = 10.0;  ///< an answer's depth is asked again this much more densely
+constexpr double kDepthShare = 10.0;  ///< where an answer's depth is not proven, it is asked this much more densely
 
 }  // namespace
 
@@ -43,14 +45,13 @@ World closing_world(const robot::CollisionChecker& free_space, const robot::Coll
   World world = make_world_by_rows(first_invalid_row, robot.weights(), resolution);
   const ContinuousCheck all = contact.clearance != nullptr ? *contact.clearance : ContinuousCheck(free_space, robot);
   const auto clearance = std::make_shared<const ContinuousCheck>(all.without_contacts(closing, links));
-  const auto not_too_deep = [contact](const Eigen::VectorXd& q) {
-    return contact.depth == nullptr || (*contact.depth)(q) <= contact.max_depth;
-  };
-  world.confirm = [clearance, not_too_deep, weights = robot.weights(), resolution](
+  world.confirm = [clearance, contact, weights = robot.weights(), spacing = Spacing(resolution / kDepthShare)](
                       const Eigen::VectorXd& q_from, const Eigen::VectorXd& q_to,
                       std::int64_t& checks) -> std::optional<double> {
     if (const auto near = clearance->first_near(q_from, q_to, checks)) return near;
-    return first_invalid(q_from, q_to, not_too_deep, weights, resolution / kDepthShare, checks);
+    if (contact.depth == nullptr) return std::nullopt;
+    const double shortest = 1.0 / std::max(1.0, spacings(spacing, weights, q_from, q_to));
+    return contact.depth->first_deeper(q_from, q_to, contact.max_depth, shortest, checks);
   };
   return world;
 }

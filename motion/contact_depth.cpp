@@ -3,8 +3,11 @@
 #include "motion/contact_depth.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -16,6 +19,7 @@ namespace opponens::motion {
 namespace {
 
 constexpr std::size_t kLeafPoints = 8;
+constexpr double kDistanceRounding = 1e-9;  ///< m, far above that of a distance
 
 }  // namespace
 
@@ -25,7 +29,7 @@ ContactDepth::ContactDepth(const robot::RobotModel& robot, const robot::Scene& s
 
 ContactDepth::ContactDepth(const robot::RobotModel& robot, const robot::Scene& scene,
                            const std::vector<TouchingLinks>& hands, double spacing)
-    : robot_(&robot) {
+    : robot_(&robot), bound_(robot) {
   require(spacing > 0.0, "ContactDepth: spacing must be positive");
   for (const TouchingLinks& hand : hands) {
     const std::size_t first_solid = solids_.size();
@@ -80,18 +84,30 @@ void ContactDepth::LinkSurface::enclose(std::size_t begin, std::size_t end) {
   balls[index].next = balls.size();
 }
 
-double ContactDepth::deepest(const LinkSurface& link, const Solid& solid, const Eigen::Isometry3d& X_GL, double depth) {
-  for (std::size_t i = 0; i < link.balls.size();) {
+double ContactDepth::deepest(const LinkSurface& link, const Solid& solid, const Eigen::Isometry3d& X_GL, double depth,
+                             double enough) {
+  // The surface is no further from a point than from the one asked before and the way between them: known before it is
+  // looked for, which is most of the search.
+  Eigen::Vector3d last_p = Eigen::Vector3d::Zero();
+  double last_distance = std::numeric_limits<double>::infinity();
+  const auto signed_distance = [&](const Eigen::Vector3d& p) {
+    const double within = last_distance + (p - last_p).norm() + kDistanceRounding;
+    const double distance = solid.distance.query(p, within).distance;
+    last_p = p;
+    last_distance = std::abs(distance);
+    return distance;
+  };
+  for (std::size_t i = 0; i < link.balls.size() && depth <= enough;) {
     const Ball& ball = link.balls[i];
     // A signed distance changes by no more than the way: no point of a ball this far out is deeper.
     const Eigen::Vector3d p_G = X_GL * ball.center;
     const double reach = ball.radius - depth;
     const double outside = solid.box.exteriorDistance(p_G);
     const bool far = outside > 0.0 && outside >= reach;
-    const bool may_be_deeper = !far && solid.distance.signed_distance(p_G) < reach;
+    const bool may_be_deeper = !far && signed_distance(p_G) < reach;
     if (may_be_deeper && ball.leaf) {
       for (std::size_t p = ball.begin; p < ball.end; ++p) {
-        depth = std::max(depth, -solid.distance.signed_distance(X_GL * link.points[p]));
+        depth = std::max(depth, -signed_distance(X_GL * link.points[p]));
       }
     }
     i = may_be_deeper && !ball.leaf ? i + 1 : ball.next;
@@ -105,10 +121,48 @@ double ContactDepth::operator()(const Eigen::VectorXd& q) const {
   for (const LinkSurface& link : links_) {
     for (std::size_t i = link.first_solid; i < link.last_solid; ++i) {
       const Solid& solid = solids_[i];
-      depth = deepest(link, solid, solid.X_GR * X_RL[static_cast<std::size_t>(link.link)], depth);
+      depth = deepest(link, solid, solid.X_GR * X_RL[static_cast<std::size_t>(link.link)], depth,
+                      std::numeric_limits<double>::infinity());
     }
   }
   return depth;
+}
+
+bool ContactDepth::keeps(const std::vector<Eigen::Isometry3d>& X_RL, const robot::LinkTravel& travel, double share,
+                         double max_depth) const {
+  return std::all_of(links_.begin(), links_.end(), [&](const LinkSurface& link) {
+    const double allowed = max_depth - share * bound_.of_link(travel, link.link);
+    for (std::size_t i = link.first_solid; i < link.last_solid; ++i) {
+      const Eigen::Isometry3d X_GL = solids_[i].X_GR * X_RL[static_cast<std::size_t>(link.link)];
+      if (deepest(link, solids_[i], X_GL, allowed, allowed) > allowed) return false;
+    }
+    return true;
+  });
+}
+
+std::optional<double> ContactDepth::first_deeper(const Eigen::VectorXd& q_from, const Eigen::VectorXd& q_to,
+                                                 double max_depth, double shortest, std::int64_t& checks) const {
+  require(shortest > 0.0, "first_deeper: the shortest part must be positive");
+  ++checks;
+  if ((*this)(q_to) > max_depth) return 1.0;
+  const Eigen::VectorXd joint_step = robot_->joint_positions(q_to) - robot_->joint_positions(q_from);
+  std::vector<std::pair<double, double>> parts{{0.0, 1.0}};
+  while (!parts.empty()) {
+    const auto [begin, end] = parts.back();
+    parts.pop_back();
+    const double middle = 0.5 * (begin + end);
+    const std::vector<Eigen::Isometry3d> X_RL = robot_->link_poses(q_from + middle * (q_to - q_from));
+    ++checks;
+    const robot::LinkTravel travel = bound_.travel(X_RL, (end - begin) * joint_step);
+    if (keeps(X_RL, travel, 0.5, max_depth)) continue;
+    if (end - begin > shortest) {
+      parts.emplace_back(middle, end);
+      parts.emplace_back(begin, middle);
+    } else if (!keeps(X_RL, travel, 0.0, max_depth)) {
+      return middle;
+    }
+  }
+  return std::nullopt;
 }
 
 }  // namespace opponens::motion

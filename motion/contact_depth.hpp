@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +12,7 @@
 #include <Eigen/Geometry>
 
 #include "robot/mesh_distance.hpp"
+#include "robot/motion_bound.hpp"
 #include "robot/robot_model.hpp"
 #include "robot/scene.hpp"
 
@@ -37,6 +40,12 @@ class ContactDepth {
   /// m, >= 0. q: [d] rad.
   double operator()(const Eigen::VectorXd& q) const;
 
+  /// Where the motion q_from to q_to is deeper than max_depth, as a fraction; nullopt: nowhere. Proven by how far the
+  /// links can have moved (robot::MotionBound) where that is enough, which it is but for depths near max_depth: there
+  /// it is asked at spacings of at most `shortest` of the motion. Adds the configurations evaluated to checks.
+  std::optional<double> first_deeper(const Eigen::VectorXd& q_from, const Eigen::VectorXd& q_to, double max_depth,
+                                     double shortest, std::int64_t& checks) const;
+
  private:
   /// A ball around some of a link's surface points. Children follow their parent.
   struct Ball {
@@ -61,10 +70,16 @@ class ContactDepth {
   void add_object(const robot::Scene& scene, const std::string& object);
   void add_link(const std::string& name, double spacing, std::size_t first_solid);
 
-  /// The greater of depth and what the points of the link reach in the solid.
-  static double deepest(const LinkSurface& link, const Solid& solid, const Eigen::Isometry3d& X_GL, double depth);
+  /// The greater of depth and what the points of the link reach in the solid; looks no further than what is deeper
+  /// than `enough`.
+  static double deepest(const LinkSurface& link, const Solid& solid, const Eigen::Isometry3d& X_GL, double depth,
+                        double enough);
+  /// Whether the links are nowhere deeper than max_depth while they move from here by a share of a travel at most.
+  bool keeps(const std::vector<Eigen::Isometry3d>& X_RL, const robot::LinkTravel& travel, double share,
+             double max_depth) const;
 
   const robot::RobotModel* robot_;
+  robot::MotionBound bound_;
   std::vector<LinkSurface> links_;
   std::vector<Solid> solids_;
 };

@@ -49,12 +49,17 @@ esac
 # build serves both. Without -Werror: the release build holds to GCC's warnings.
 # UBSan without null and object-size, which ASan sees, and alignment; the readers of outside bytes have them too.
 sanitize_build() {  # TARGET
-  configure_and_build sanitize "$1" -DOPPONENS_WERROR=OFF -DOPPONENS_TESTS=ON -DOPPONENS_EXAMPLES=OFF
+  configure_and_build sanitize "$1" -DOPPONENS_WERROR=OFF -DOPPONENS_TESTS=ON -DOPPONENS_EXAMPLES=OFF \
+    -DOPPONENS_TEST_CASES=OFF
 }
+
+# Of damaged files fewer than the tests' own number, which takes minutes.
+export OPPONENS_MUTATIONS="${OPPONENS_MUTATIONS:-120}"
 
 install_packages
 if [ "$part" = all ] || [ "$part" = release ]; then
-  configure_and_build release all -DOPPONENS_WERROR=ON -DOPPONENS_TESTS=ON -DOPPONENS_EXAMPLES=ON
+  configure_and_build release all -DOPPONENS_WERROR=ON -DOPPONENS_TESTS=ON -DOPPONENS_EXAMPLES=ON \
+    -DOPPONENS_TEST_CASES=OFF
   run_tests release
 fi
 if [ "$part" = all ] || [ "$part" = sanitize ]; then

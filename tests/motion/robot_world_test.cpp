@@ -265,6 +265,45 @@ TEST_F(RobotWorld, ContactDepthIsThatOfTheDeepestSurfacePoint) {
   EXPECT_GT(deep, 5);
 }
 
+TEST_F(RobotWorld, FirstDeeperFindsWhatDenseSamplesFindAndProvesTheRest) {
+  const auto& tip = robot.description().tips.front();
+  const robot::Link& link = robot.links()[static_cast<std::size_t>(tip.link)];
+  Rng rng = stream(12, "deeper");
+  int deeper = 0;
+  int shallow = 0;
+  for (int trial = 0; trial < 30; ++trial) {
+    const auto near = [&] {
+      return Eigen::VectorXd(start() + 0.02 * Eigen::VectorXd::NullaryExpr(robot.dof(), [&] { return rng.normal(); }));
+    };
+    const Eigen::VectorXd q_from = near();
+    const Eigen::VectorXd q_to = near();
+    // Its surface passes within some millimetres of the fingertip half way.
+    const Eigen::VectorXd q_middle = 0.5 * (q_from + q_to);
+    const Eigen::Isometry3d X_WL = scene.X_WR * robot.link_poses(q_middle)[static_cast<std::size_t>(tip.link)];
+    const Eigen::Vector3d center = X_WL * tip.p_L + (0.03 - rng.uniform(-0.02, 0.006)) * (X_WL.linear() * tip.n_L);
+    robot::Scene ball = scene;
+    ball.bodies = {{"ball", Eigen::Isometry3d(Eigen::Translation3d(center)), {{robot::Sphere{0.03}, {}}}}};
+    ball.bodies[0].geometry[0].X_BG.setIdentity();
+    const ContactDepth depth(robot, ball, "ball", {link.name});
+    const auto at = [&](double fraction) { return depth(q_from + fraction * (q_to - q_from)); };
+    double deepest = 0.0;
+    for (int i = 0; i <= 2000; ++i) deepest = std::max(deepest, at(i / 2000.0));
+    std::int64_t checks = 0;
+    const auto found = depth.first_deeper(q_from, q_to, 0.001, 1e-4, checks);
+    if (found) {
+      EXPECT_GT(at(*found), 0.001);
+    } else {
+      EXPECT_LE(deepest, 0.001 + 1e-6);
+    }
+    EXPECT_TRUE(found || deepest <= 0.00101) << deepest;
+    EXPECT_TRUE(deepest >= 0.0005 || checks < 200) << deepest << " m, " << checks << " checks";
+    deeper += found ? 1 : 0;
+    shallow += !found && deepest > 0.0 ? 1 : 0;
+  }
+  EXPECT_GT(deeper, 3);
+  EXPECT_GT(shallow, 1) << "some touch and are allowed to";
+}
+
 TEST(GrownScene, KeepsTheMarginFromEveryShapeButTheException) {
   robot::Scene scene;
   const auto mesh = std::make_shared<const robot::TriangleMesh>(robot::triangulate(robot::Sphere{0.04}, 64));
