@@ -37,8 +37,8 @@ class DistanceGrid {
   /// Inside the grid the value, outside a lower bound of the distance (but for error()) instead of an upper one.
   double bound(const Eigen::Vector3d& p) const { return holds(p) ? interpolate(locate(p)) : bound_outside(p); }
   bool holds(const Eigen::Vector3d& p) const {
-    return (p.x() >= lower_.x()) & (p.y() >= lower_.y()) & (p.z() >= lower_.z()) & (p.x() <= upper_.x()) &
-           (p.y() <= upper_.y()) & (p.z() <= upper_.z());
+    return p.x() >= lower_.x() && p.y() >= lower_.y() && p.z() >= lower_.z() && p.x() <= upper_.x() &&
+           p.y() <= upper_.y() && p.z() <= upper_.z();
   }
   double spacing() const { return spacing_; }
   /// Bound of |value - distance| inside the grid, m: the nodes are exact, the distance changes by at most 1 m per m,

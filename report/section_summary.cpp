@@ -78,15 +78,11 @@ std::string path_words(const PathPart& part) {
   return concat({words, "; by ", run.planner, ", seed ", std::to_string(run.seed)});
 }
 
+/// Table 2's; the section of the path has them all.
 std::string likeness_words(const PathPart& part) {
-  std::string words;
-  if (!part.runs.empty()) {
-    for (const auto& item : part.runs.front().human_likeness) {
-      words += concat({words.empty() ? "" : "; ", item.value ? concat({fixed(*item.value, 1), " %"}) : "none",
-                       ", reference: ", item.reference});
-    }
-  }
-  return words.empty() ? std::string("no reference") : words;
+  if (part.runs.empty() || part.runs.front().human_likeness.empty()) return "no reference";
+  const auto& item = part.runs.front().human_likeness.front();
+  return concat({item.value ? concat({fixed(*item.value, 1), " %"}) : "none", ", reference: ", item.reference});
 }
 
 Markup verdict(const VerifyPart& part) {
