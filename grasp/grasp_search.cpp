@@ -21,6 +21,7 @@
 #include "grasp/hand_surface.hpp"
 #include "grasp/in_parallel.hpp"
 #include "grasp/quality.hpp"
+#include "grasp/random_vector.hpp"
 
 namespace opponens::grasp {
 namespace {
@@ -108,9 +109,8 @@ Trial run_trial(const Search& search, std::int64_t index) {
 /// quarter of the box's half widths; what the grasp has beside its synergies stays.
 HandPose neighbour(const Search& search, const Grasp& grasp, double scale, Rng& rng) {
   const SynergyBox& box = search.group.box;
-  const auto deviate = [&] { return Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal()); };
-  const Eigen::Vector3d shift = 0.008 * scale * deviate();
-  const Eigen::Vector3d turn = 0.12 * scale * deviate();
+  const Eigen::Vector3d shift = 0.008 * scale * normal_vector(rng);
+  const Eigen::Vector3d turn = 0.12 * scale * normal_vector(rng);
   Eigen::VectorXd y(box.half_width.size());
   for (Eigen::Index i = 0; i < y.size(); ++i) y[i] = 0.25 * scale * box.half_width[i] * rng.normal();
   HandPose pose{grasp.X_OH, grasp.q_grasp + box.scale.cwiseProduct(box.axes * y)};

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "analysis/synergy_box.hpp"
+#include "grasp/random_vector.hpp"
 
 namespace opponens::grasp {
 namespace {
@@ -20,7 +21,7 @@ constexpr double kMaxTilt = 0.5;       // rad between approach direction and sur
 
 /// A direction at most kMaxTilt from d.
 Eigen::Vector3d tilt(const Eigen::Vector3d& d, Rng& rng) {
-  const Eigen::Vector3d any(rng.normal(), rng.normal(), rng.normal());
+  const Eigen::Vector3d any = normal_vector(rng);
   const Eigen::Vector3d side = (any - any.dot(d) * d).normalized();
   const double angle = kMaxTilt * std::sqrt(rng.uniform());
   return std::cos(angle) * d + std::sin(angle) * side;

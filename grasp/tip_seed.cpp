@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "analysis/synergy_box.hpp"
+#include "grasp/random_vector.hpp"
 
 namespace opponens::grasp {
 namespace {
@@ -26,7 +27,7 @@ struct Chord {
 std::optional<Chord> draw_chord(const PrecisionSpace& space, Rng& rng) {
   for (int i = 0; i < kChords; ++i) {
     const SurfaceSeed start = sample_surface(space.target, rng);
-    const Eigen::Vector3d any(rng.normal(), rng.normal(), rng.normal());
+    const Eigen::Vector3d any = normal_vector(rng);
     const double tilt = std::tan(kChordTilt * std::sqrt(rng.uniform()));
     const Eigen::Vector3d side = (any - any.dot(start.n_O) * start.n_O).normalized();
     const Eigen::Vector3d direction = (tilt * side - start.n_O).normalized();
