@@ -19,9 +19,9 @@ namespace opponens::motion {
 
 /// The world of a closing segment: joint limits; collision-free, or touching only where the grasp's contacts say so:
 /// what collides at q is then a pair of a contact's link that `closing` leaves out, and no deeper than
-/// contact.max_depth. Confirming asks everything else to keep contact.clearance throughout, and the depth too, or, where
-/// that cannot be proven, at a tenth of the spacing. free_space: checker with everything; closing: checker that leaves
-/// out hand-object pairs (it may leave out more links than have contacts, so one serves all grasps). All but the
+/// contact.max_depth. Confirming asks everything else to keep contact.clearance throughout, and the depth too, or,
+/// where that cannot be proven, at a tenth of the spacing. free_space: checker with everything; closing: checker that
+/// leaves out hand-object pairs (it may leave out more links than have contacts, so one serves all grasps). All but the
 /// contacts are referred to and must outlive the world.
 World closing_world(const robot::CollisionChecker& free_space, const robot::CollisionChecker& closing,
                     const robot::RobotModel& robot, const std::vector<Contact>& contacts, double resolution,
