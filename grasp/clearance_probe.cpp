@@ -100,7 +100,7 @@ double ClearanceProbe::still(const Seen& seen, const Eigen::Isometry3d& X, std::
 
 void ClearanceProbe::look_at_object(const Eigen::Isometry3d& X_OH, std::size_t link, Clearance& least) {
   const DistanceGrid& grid = *scene_.target.grid;
-  // Near the surface, points little farther than the rough minimum may be the nearest in truth; far from it a tenth of
+  // Near the surface, points little farther than the rough minimum may be the nearest in truth; far from it a fifth of
   // the distance does not matter.
   const auto bound = [&] {
     if (least.object >= kExactWithin) return kFarShare * least.object;

@@ -9,13 +9,13 @@
 
 namespace opponens::grasp {
 
-/// m, from everything but the object: more room does not make a step longer, so it is not looked for.
+/// m. A step may always be this long for all that is beside the way: no link is thinner.
 inline constexpr double kEnoughRoom = 0.004;
 
 struct Clearance {
   double object;  ///< m
-  /// m, from obstacles less 3 mm and the hand's other links less 1 mm. Not looked for beyond `object` or kEnoughRoom,
-  /// whichever is larger, nor where the object is penetrated; 5 cm when they are not watched.
+  /// m, from obstacles less 3 mm and the hand's other links less 1 mm. Not looked for beyond `object` (but at least
+  /// to kEnoughRoom and at most to 1 cm), nor where the object is penetrated; 5 cm when they are not watched.
   double others;
   int link = -1;                                  ///< that is nearest to the object; -1: it is farther than 5 cm
   Eigen::Vector3d p_O = Eigen::Vector3d::Zero();  ///< that link's nearest point
@@ -29,7 +29,7 @@ enum class Watch {
 };
 
 /// Least distances of the links' surface points to what they watch for, at most 5 cm. Beyond 2 mm a point nearer by
-/// up to a tenth may be missed. Distances to the object come from its grid; within 2 mm those of the five least points
+/// up to a fifth may be missed. Distances to the object come from its grid; within 2 mm those of the five least points
 /// are measured on the mesh. What a link was seen to keep is remembered, so that little is looked at again after a
 /// small motion: one probe per closing.
 class ClearanceProbe {
