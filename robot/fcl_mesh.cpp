@@ -11,23 +11,11 @@
 #include <fcl/math/bv/OBBRSS.h>
 
 #include "core/require.hpp"
+#include "robot/leaf_triangles.hpp"
 
 namespace opponens::robot {
 
 namespace {
-
-constexpr double kBallSlack = 1e-6;  ///< of a ball's radius: far above the rounding of a distance
-
-/// Those whose boxes reach into a ball.
-std::vector<Eigen::Index> triangles_near(const TriangleMesh& mesh, const SphereTree::Node& ball) {
-  std::vector<Eigen::Index> near;
-  for (Eigen::Index f = 0; f < mesh.triangles.cols(); ++f) {
-    Eigen::AlignedBox3d box;
-    for (int k = 0; k < 3; ++k) box.extend(Eigen::Vector3d(mesh.vertices.col(mesh.triangles(k, f))));
-    if (!(box.exteriorDistance(ball.center) > ball.radius * (1.0 + kBallSlack))) near.push_back(f);
-  }
-  return near;
-}
 
 /// The chosen triangles.
 FclGeometry fcl_mesh(const TriangleMesh& mesh, const std::vector<Eigen::Index>& chosen) {

@@ -10,7 +10,8 @@ namespace opponens::robot {
 
 namespace {
 
-constexpr double kSlack = 1e-9;  ///< m, far above the rounding of a distance between bodies
+constexpr double kSlack = 1e-9;      ///< m, far above the rounding of a distance between bodies
+constexpr double kBallSlack = 1e-6;  ///< of a ball's radius, likewise
 
 bool reaches(const BoxedTriangle& triangle, const Eigen::Vector3d& center, double radius) {
   return !(triangle.box.squaredExteriorDistance(center) > radius * radius);
@@ -32,18 +33,28 @@ bool meet(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
   return fcl::detail::Intersect<double>::intersect_Triangle(a.col(0), a.col(1), a.col(2), b.col(0), b.col(1), b.col(2));
 }
 
+BoxedTriangle triangle_of(const TriangleMesh& mesh, Eigen::Index index) {
+  Eigen::Matrix3d corners;
+  for (int k = 0; k < 3; ++k) corners.col(k) = mesh.vertices.col(mesh.triangles(k, index));
+  return boxed(corners);
+}
+
 }  // namespace
+
+std::vector<Eigen::Index> triangles_near(const TriangleMesh& mesh, const SphereTree::Node& ball) {
+  std::vector<Eigen::Index> near;
+  for (Eigen::Index f = 0; f < mesh.triangles.cols(); ++f) {
+    if (reaches(triangle_of(mesh, f), ball.center, ball.radius * (1.0 + kBallSlack) + kSlack)) near.push_back(f);
+  }
+  return near;
+}
 
 const std::vector<BoxedTriangle>& LeafTriangles::of(const SphereTree& tree, int leaf) const {
   std::call_once(leaves_once_, [&] { leaves_ = std::make_unique<Lazy[]>(tree.nodes.size()); });
   Lazy& own = leaves_[static_cast<std::size_t>(leaf)];
   std::call_once(own.once, [&] {
-    const SphereTree::Node& ball = tree.nodes[static_cast<std::size_t>(leaf)];
-    for (Eigen::Index f = 0; f < mesh_.triangles.cols(); ++f) {
-      Eigen::Matrix3d corners;
-      for (int k = 0; k < 3; ++k) corners.col(k) = mesh_.vertices.col(mesh_.triangles(k, f));
-      const BoxedTriangle triangle = boxed(corners);
-      if (reaches(triangle, ball.center, ball.radius + kSlack)) own.made.push_back(triangle);
+    for (const Eigen::Index f : triangles_near(mesh_, tree.nodes[static_cast<std::size_t>(leaf)])) {
+      own.made.push_back(triangle_of(mesh_, f));
     }
   });
   return own.made;

@@ -20,7 +20,10 @@ struct BoxedTriangle {
   Eigen::AlignedBox3d box;
 };
 
-/// Of each leaf all triangles whose boxes reach into its ball, hence all in its cell, and some beside it. Collected
+/// Those whose boxes reach into a ball, in ascending order.
+std::vector<Eigen::Index> triangles_near(const TriangleMesh& mesh, const SphereTree::Node& ball);
+
+/// Of each leaf all triangles_near its ball, hence all in its cell, and some beside it. Collected
 /// when a leaf is asked for first: few are. Thread-safe.
 class LeafTriangles {
  public:
